@@ -33,6 +33,8 @@ AWAY_S: Final = (0.1, 0.6)
 """It waits for a time between these before it comes back."""
 PORTALS: Final = {"The yard": (17.0, 10.0), "The hall": (1.5, 6.0)}
 """The middle of the portal of each scene."""
+ACROSS_S: Final = 9.0
+"""It takes about so long to walk to a portal."""
 FASTEST_MPS: Final = 2.0
 
 
@@ -115,6 +117,7 @@ class Bot:
                     x, y = PORTALS[account.zone]
                     client.seq += 1
                     await client.send(WalkTo(seq=client.seq, x=x, y=y))
+                    await asyncio.sleep(ACROSS_S)
                 case _:
                     direction = self._chance.uniform(-math.pi, math.pi)
                     await client.move(direction, self._chance.uniform(0.0, FASTEST_MPS))

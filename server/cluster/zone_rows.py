@@ -13,7 +13,7 @@ from esplanade.server.store.tables import CLUSTER_ZONES
 
 
 @dataclass(frozen=True)
-class SavedZone:
+class ZoneCheckpoint:
     """The newest checkpoint of a zone."""
 
     tick: int
@@ -22,7 +22,7 @@ class SavedZone:
     saved: bytes = field(repr=False)
 
 
-def keep_described(connection: Connection, owner: Claim, described: bytes) -> None:
+def keep_description(connection: Connection, owner: Claim, described: bytes) -> None:
     """Write what gateways tell newcomers to a zone.
 
     Raises
@@ -33,7 +33,7 @@ def keep_described(connection: Connection, owner: Claim, described: bytes) -> No
     _keep(connection, owner, {"described": described})
 
 
-def keep_saved(connection: Connection, owner: Claim, tick: int, saved: bytes) -> None:
+def keep_checkpoint(connection: Connection, owner: Claim, tick: int, saved: bytes) -> None:
     """Write a checkpoint of a zone in the place of the one before.
 
     Raises
@@ -44,7 +44,7 @@ def keep_saved(connection: Connection, owner: Claim, tick: int, saved: bytes) ->
     _keep(connection, owner, {"tick": tick, "saved": saved, "saved_us": NOW_US})
 
 
-def described(connection: Connection, zone: str) -> tuple[int, bytes] | None:
+def description_of(connection: Connection, zone: str) -> tuple[int, bytes] | None:
     """The epoch of a zone's last owner, and what that one has written; None if nobody has."""
     table = CLUSTER_ZONES.c
     chosen = select(table.epoch, table.described).where(table.zone == zone)
@@ -52,7 +52,7 @@ def described(connection: Connection, zone: str) -> tuple[int, bytes] | None:
     return None if row is None or row.described is None else (row.epoch, row.described)
 
 
-def saved(connection: Connection, zone: str) -> SavedZone | None:
+def newest_checkpoint(connection: Connection, zone: str) -> ZoneCheckpoint | None:
     """The newest checkpoint of a zone; None if there is none."""
     table = CLUSTER_ZONES.c
     ago_us: ColumnElement[int] = NOW_US - table.saved_us
@@ -60,7 +60,7 @@ def saved(connection: Connection, zone: str) -> SavedZone | None:
     row = connection.execute(chosen).one_or_none()
     if row is None or row.saved is None:
         return None
-    return SavedZone(row.tick, max(0, row.ago_us), row.saved)
+    return ZoneCheckpoint(row.tick, max(0, row.ago_us), row.saved)
 
 
 def checkpoints_ago_us(connection: Connection) -> dict[str, int]:

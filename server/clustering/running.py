@@ -17,6 +17,7 @@ from esplanade.server.entrances import in_url
 from esplanade.server.gateway.gateway import gateway
 from esplanade.server.host.host import Host, read_world
 from esplanade.server.link.broker import connected
+from esplanade.server.link.process_metrics import process_metrics
 from esplanade.server.loading import LoadingError
 from esplanade.server.metrics import Metrics
 from esplanade.server.net.health import health_port
@@ -50,7 +51,7 @@ async def run_host(settings: ServerSettings, membership: Membership, zones: Sequ
                 raise LoadingError(
                     f"the world has no zone {name!r}; it has: {', '.join(sorted(known))}"
                 )
-        stop, metrics = asyncio.Event(), _metrics(known, broker)
+        stop, metrics = asyncio.Event(), process_metrics(known, broker)
         host = Host(membership.name, world, zones, store, broker, metrics, stop)
         async with _health(membership, metrics, lambda: host.hindrance):
             # Until then there is nothing to put in order, but a thread that cannot be interrupted.
@@ -119,15 +120,6 @@ async def _health(
     async with health_port(host, membership.health_port, metrics, hindrance) as port:
         log.info("health", url=f"http://{in_url(host)}:{port}")
         yield
-
-
-def _metrics(zones: Sequence[str], broker: Client) -> Metrics:
-    """The metrics of a process in which no zone ticks yet."""
-    metrics = Metrics(zones)
-    for zone in zones:
-        metrics.rests(zone)
-    metrics.gauge("broker_connected", "Whether a broker is there", lambda: int(broker.is_connected))
-    return metrics
 
 
 def _stop_by_signals(stop: asyncio.Event) -> None:

@@ -17,6 +17,7 @@ from esplanade.server.cluster.processes import GATEWAY
 from esplanade.server.cluster.world_rows import world_kept
 from esplanade.server.gateway.reception import Reception
 from esplanade.server.heartbeat import Heartbeat
+from esplanade.server.link.process_metrics import process_metrics
 from esplanade.server.link.subjects import Subjects
 from esplanade.server.metrics import Metrics
 from esplanade.server.net.descriptors import places_for_people
@@ -63,10 +64,7 @@ async def gateway(
     tls = _tls(settings)
     world = await store.read(world_kept)
     zones = await store.read(_zones)
-    metrics = Metrics(zones)
-    for zone in zones:
-        metrics.rests(zone)
-    metrics.gauge("broker_connected", "Whether a broker is there", lambda: int(broker.is_connected))
+    metrics = process_metrics(zones, broker)
     async with AsyncExitStack() as stack:
         sockets = await bound_sockets(settings.host, settings.port)
         for each in sockets:

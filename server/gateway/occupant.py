@@ -17,6 +17,8 @@ class Occupant:
     resumed: bool
     since_s: float
     """When the seat was taken, or the person was seen last in the zone; seconds of the loop."""
+    is_known: bool = False
+    """Whether the zone has told that it lets nobody steer who has had the seat before."""
     is_in: bool = False
     """Whether the client has been welcomed to any zone on this connection."""
     moves: bool = False

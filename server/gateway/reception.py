@@ -2,26 +2,22 @@
 
 import asyncio
 from collections.abc import Callable, Sequence
-from functools import partial
 from itertools import islice
 from typing import Any, Final
 
 import structlog
 from nats.aio.client import Client
-from nats.aio.msg import Msg
 
 from esplanade.protocol import ByeCode, CloseCode, ErrorCode, ProtocolError
 from esplanade.protocol.messages import Bye, Error, Hello
 from esplanade.server.cluster.person_record import PersonRecord, RecordError, decode_record
 from esplanade.server.cluster.seats import ClusterSeat
-from esplanade.server.cluster.zone_rows import described
 from esplanade.server.gateway.cluster_seats import ClusterSeats
 from esplanade.server.gateway.occupant import Occupant
+from esplanade.server.gateway.views import Views, ZonesAwayError
 from esplanade.server.gateway.zone_view import ZoneView
 from esplanade.server.gateway.zone_wishes import ZoneWishes
-from esplanade.server.link.answers import AnswerError, decode_answers
 from esplanade.server.link.subjects import Subjects
-from esplanade.server.link.zone_description import DescriptionError, decode_description
 from esplanade.server.metrics import Metrics
 from esplanade.server.net import frames
 from esplanade.server.net.names import ReservedNameError, check_reserved, like
@@ -50,17 +46,6 @@ _REPLACED: Final = frames.message(
 log = structlog.get_logger(__name__)
 
 
-class ZonesAwayError(ProtocolError):
-    """A zone has not told anything of itself yet."""
-
-    def __init__(self, zone: str) -> None:
-        super().__init__(
-            ErrorCode.BUSY,
-            f"the zone {zone} is not there just now; come again in a moment",
-            CloseCode.BUSY,
-        )
-
-
 class Reception:
     """Hands each session on to the zone where its seat is, and goes with it where the seat goes."""
 
@@ -75,10 +60,11 @@ class Reception:
         metrics: Metrics,
     ) -> None:
         """`gateway` is the name of this process, `start` the zone that newcomers enter."""
-        self.views: dict[str, ZoneView] = {}
+        self.views = Views(
+            gateway, store, broker, subjects, settings, metrics, self.depart, self.confirm
+        )
         self._gateway = gateway
         self._start = start
-        self._store = store
         self._broker = broker
         self._subjects = subjects
         self._settings = settings
@@ -86,7 +72,6 @@ class Reception:
         self._seats = ClusterSeats(store, gateway)
         self._keys = OperatorKeys(settings.operator_key.get_secret_value(), metrics)
         self._places: dict[Session, tuple[ZoneView, Occupant]] = {}
-        self._opening = asyncio.Lock()
         self._tasks: set[asyncio.Task[Any]] = set()
         self._reading: Reading | None = None
         self._closing = False
@@ -136,7 +121,7 @@ class Reception:
         speeds_mps: Sequence[float],
     ) -> None:
         """Take movements of many people, each for the zone where the person is."""
-        for view in self.views.values():
+        for view in self.views:
             view.wishes.moved(avatar_ids, numbers, directions_rad, speeds_mps)
 
     def confirm(self, session: Session) -> None:
@@ -171,7 +156,7 @@ class Reception:
         record = _record_of(seat)
         who = Occupant(seat.person, seat.generation, session, record, resumed, now_s)
         try:
-            view = await self.view(seat.zone)
+            view = await self.views.opened(seat.zone)
         except ProtocolError:
             if not resumed:
                 await self._seats.leave(seat.person, seat.generation)
@@ -198,7 +183,7 @@ class Reception:
             raise ProtocolError(
                 ErrorCode.NAME_RESERVED, str(error), CloseCode.NAME_RESERVED
             ) from None
-        view = await self.view(self._start)
+        view = await self.views.opened(self._start)
         too_many = len(self._places) >= self._settings.max_clients
         if too_many or view.people >= view.most_people:
             most = self._settings.max_clients if too_many else view.most_people
@@ -218,7 +203,7 @@ class Reception:
     def _replace(self, who: Occupant) -> bool:
         """Part with a session of this gateway whose seat this one has taken; False if that one has
         taken it later."""
-        for view in self.views.values():
+        for view in self.views:
             other = view.occupants.get(who.person)
             if other is None:
                 continue
@@ -236,48 +221,12 @@ class Reception:
         except TooManyKeysError as error:
             session.fault_at_welcome = ProtocolError(ErrorCode.KEY_UNREAD, str(error), None)
 
-    # --- zones --------------------------------------------------------------------------------
-
-    async def view(self, zone: str) -> ZoneView:
-        """The view of a zone, which is opened where nobody of this gateway is there yet.
-
-        Raises
-        ------
-        ProtocolError
-            The zone has never been run, or the database does not answer.
-        """
-        async with self._opening:
-            known = self.views.get(zone)
-            if known is not None:
-                return known
-            try:
-                found = await self._store.read(partial(_described, zone))
-                if found is None:
-                    raise ZonesAwayError(zone)
-                description = decode_description(found[1])
-            except (StoreError, DescriptionError) as error:
-                log.warning("a zone cannot be shown", zone=zone, why=str(error))
-                raise ZonesAwayError(zone) from None
-            metrics = self._metrics.of_zone(zone)
-            view = ZoneView(
-                zone,
-                description,
-                self._gateway,
-                self._broker,
-                self._subjects,
-                self._settings,
-                metrics,
-                self.depart,
-                self.confirm,
-            )
-            self.views[zone] = view
-            self._begin(view.run())
-            return view
+    # --- the whole gateway --------------------------------------------------------------------
 
     async def run(self) -> None:
         """Send what people want, and look after those whom no zone shows, until cancelled."""
         answers = await self._broker.subscribe(
-            self._subjects.gateway(self._gateway), cb=self._answered
+            self._subjects.gateway(self._gateway), cb=self.views.answered
         )
         self._begin(self._seats.run())
         self._begin(self._look())
@@ -289,8 +238,7 @@ class Reception:
                 await asyncio.sleep(due - loop.time())
                 if self._reading is not None:
                     self._reading.poll()
-                for view in list(self.views.values()):
-                    await view.send()
+                await self.views.send()
         finally:
             if not self._broker.is_closed:
                 await answers.unsubscribe()
@@ -309,8 +257,7 @@ class Reception:
             for session in leaving:
                 self.depart(session, comes_back=True)
                 ending.append(session.dismiss(farewell, CloseCode.GOING_AWAY, text))
-            for view in self.views.values():
-                await view.send()
+            await self.views.send()
             if self._places:
                 await asyncio.sleep(PAUSE_S)
         if ending:
@@ -318,17 +265,7 @@ class Reception:
         for task in self._tasks:
             task.cancel()
         await asyncio.gather(*self._tasks, return_exceptions=True)
-
-    async def _answered(self, message: Msg) -> None:
-        try:
-            zone, answers = decode_answers(message.data)
-        except AnswerError as error:
-            log.warning("bad answers", error=str(error))
-            return
-        view = self.views.get(zone)
-        if view is not None:
-            for answer in answers:
-                view.answered(answer)
+        await self.views.close()
 
     # --- seats that are elsewhere -------------------------------------------------------------
 
@@ -338,9 +275,7 @@ class Reception:
             await asyncio.sleep(LOOK_S)
             now_s = asyncio.get_running_loop().time()
             missing = [
-                (view, who)
-                for view in self.views.values()
-                for who in view.missing(now_s - LOOK_S / 2)
+                (view, who) for view in self.views for who in view.missing(now_s - LOOK_S / 2)
             ]
             if not missing:
                 continue
@@ -369,7 +304,7 @@ class Reception:
             who.session.dismiss(farewell, CloseCode.SILENT, ByeCode.SILENT.value)
         elif seat.zone != view.zone:
             try:
-                there = await self.view(seat.zone)
+                there = await self.views.opened(seat.zone)
             except ProtocolError:
                 return  # it is tried again
             who.record = _record_of(seat).model_copy(
@@ -402,7 +337,3 @@ def _record_of(seat: ClusterSeat) -> PersonRecord:
     except RecordError as error:
         log.warning("a seat cannot be read", person=seat.person, error=str(error))
         return PersonRecord()
-
-
-def _described(zone: str, connection: Any) -> tuple[int, bytes] | None:
-    return described(connection, zone)

@@ -39,6 +39,8 @@ from esplanade.server.world.audience import Audience
 from esplanade.server.world.frame import Frame
 from esplanade.server.world.stage_times import StageTimes
 
+KNOWN_S: Final = 0.7
+"""Somebody whom the zone shows is let in after so long at the latest."""
 HOLD_S: Final = 0.5
 """A zone is told of everyone whom this gateway serves there so often."""
 
@@ -222,8 +224,8 @@ class ZoneView:
         self.known.take(frame)
         self._tick = frame.tick + self._shift
         self._silence.heard()
-        self._end_replaced(frame)
-        attached = self._welcome(frame)
+        self._take_tickets(frame)
+        attached = self._welcome(frame, now_s)
         told = replace(
             frame, tick=self._tick, joined=[], attached=attached, detached=self._detached
         )
@@ -235,12 +237,16 @@ class ZoneView:
             self.occupants[person].since_s = now_s
         self._metrics.tick_took(perf_counter() - start, self._times.seconds)
 
-    def _end_replaced(self, frame: Frame) -> None:
-        """Part with those whose seat somebody has taken since, at another gateway."""
+    def _take_tickets(self, frame: Frame) -> None:
+        """Take in which occupations the zone knows; whose seat somebody has taken since goes."""
         for generation, person in (*frame.joined, *frame.attached):
             who = self.occupants.get(person)
-            if who is not None and who.generation < generation:
+            if who is None:
+                continue
+            if who.generation < generation:
                 self.replaced(who)
+            elif who.generation == generation:
+                who.is_known = True
 
     def replaced(self, who: Occupant) -> None:
         """Part with somebody whose seat somebody else has taken."""
@@ -249,7 +255,15 @@ class ZoneView:
         farewell = frames.message(Bye(reason=ByeCode.REPLACED, text=text))
         who.session.dismiss(farewell, CloseCode.REPLACED, ByeCode.REPLACED.value)
 
-    def _welcome(self, frame: Frame) -> list[tuple[int, int]]:
+    def _shows(self, who: Occupant, now_s: float) -> bool:
+        """Whether somebody is in the zone, and nobody else steers them any more.
+
+        The frame that tells of an occupation may be missed, so it is waited for for a while only.
+        """
+        waited = who.is_known or now_s - who.since_s > KNOWN_S
+        return waited and who.person in self.known
+
+    def _welcome(self, frame: Frame, now_s: float) -> list[tuple[int, int]]:
         """Welcome those whom the zone shows now; returns them as an audience wants them.
 
         Nothing is shown to whoever has left the zone until it is known where the seat is.
@@ -262,7 +276,7 @@ class ZoneView:
         attached = []
         if len(self.occupants) > len(self.sessions):
             for who in self.occupants.values():
-                if who.person not in self.sessions and who.person in self.known:
+                if who.person not in self.sessions and self._shows(who, now_s):
                     self._let_in(who)
                     attached.append((who.generation, who.person))
         return attached

@@ -11,7 +11,7 @@ import structlog
 from esplanade.server.checkpoint.errors import CheckpointError
 from esplanade.server.checkpoint.format import pack, unpack
 from esplanade.server.cluster.tenure import Claim
-from esplanade.server.cluster.zone_rows import SavedZone, keep_saved
+from esplanade.server.cluster.zone_rows import ZoneCheckpoint, keep_checkpoint
 from esplanade.server.store.store import Store, StoreError
 from esplanade.server.world.zone import Zone
 
@@ -77,10 +77,10 @@ class Checkpointing:
 
 
 def _keep(claim: Claim, tick: int, packed: bytes, connection: Any) -> None:
-    keep_saved(connection, claim, tick, packed)
+    keep_checkpoint(connection, claim, tick, packed)
 
 
-def unpacked(kept: SavedZone | None) -> Mapping[str, Any]:
+def unpacked(kept: ZoneCheckpoint | None) -> Mapping[str, Any]:
     """The parts of a checkpoint; none where there is none, or where it cannot be read."""
     if kept is None:
         return {}

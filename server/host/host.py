@@ -19,8 +19,9 @@ from esplanade.server.cluster.processes import HOST, processes
 from esplanade.server.cluster.tenure import Claim, Tenure
 from esplanade.server.cluster.world_rows import ClusterWorld, world_kept, write_files
 from esplanade.server.heartbeat import Heartbeat
-from esplanade.server.host.hosted_zone import Found, HostedZone, build, hosted_zone
+from esplanade.server.host.hosted_zone import HostedZone, hosted_zone
 from esplanade.server.host.renewal import Renewal
+from esplanade.server.host.zone_recovery import Found, build
 from esplanade.server.link.subjects import Subjects
 from esplanade.server.metrics import Metrics
 from esplanade.server.settings import ServerSettings

@@ -75,7 +75,7 @@ class HostedPeople:
     def attach(self, person: int, generation: int, gateway: str, now_s: float) -> None:
         """Let a client look and steer who has taken the seat later than the one before."""
         if self.occupations.attach(person, generation, gateway, now_s):
-            self._routes.forget(person)
+            self._end(person)
             self._pending.come(Detach(person), Attach(person, generation))
 
     def present(self, gateway: str, held: Mapping[int, int], now_s: float) -> None:
@@ -105,7 +105,7 @@ class HostedPeople:
             if known is None or known.generation < seat.generation:
                 self.occupations.restore(seat.person, seat.generation, seat.gateway, now_s)
                 if seat.person in self._world.state:
-                    self._routes.forget(seat.person)
+                    self._end(seat.person)
                     self._pending.come(Detach(seat.person), Attach(seat.person, seat.generation))
             self._seats[seat.person] = seat
             is_known = seat.person in self._world.state or seat.person in self._moving

@@ -1,13 +1,12 @@
 """One zone as its host runs it, from the claim to the day when it is another host's."""
 
 import asyncio
-import hashlib
 from collections.abc import AsyncIterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import AsyncExitStack, asynccontextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import partial
-from typing import Any, Final
+from typing import Any
 
 import msgpack
 import structlog
@@ -16,19 +15,11 @@ from nats.aio.msg import Msg
 
 from esplanade.actors.warming import tables_ahead
 from esplanade.planning import Scene
-from esplanade.server.building import build_world
-from esplanade.server.checkpoint.errors import CheckpointError
-from esplanade.server.checkpoint.ids import Block
-from esplanade.server.checkpoint.parts import Parts
-from esplanade.server.checkpoint.returning import Left
-from esplanade.server.checkpoint.rows import KeptSeat
-from esplanade.server.checkpoint.scene import SceneKey
 from esplanade.server.cluster.ownership import NotOwnerError
-from esplanade.server.cluster.seats import ClusterSeat, seats_in
 from esplanade.server.cluster.tenure import Tenure
-from esplanade.server.cluster.zone_rows import SavedZone, keep_described
-from esplanade.server.cluster.zone_rows import saved as saved_in
-from esplanade.server.host import checkpointing
+from esplanade.server.cluster.zone_rows import (
+    keep_description,
+)
 from esplanade.server.host.answering import Answering
 from esplanade.server.host.checkpointing import Checkpointing
 from esplanade.server.host.gateway_batches import GatewayBatches
@@ -37,40 +28,22 @@ from esplanade.server.host.portals import Portals
 from esplanade.server.host.renewal import Renewal
 from esplanade.server.host.seat_desk import SeatDesk
 from esplanade.server.host.ticking import HostTicker
+from esplanade.server.host.zone_recovery import build, digest_of, found_in
 from esplanade.server.link.frames_over_nats import FrameSender
 from esplanade.server.link.subjects import Subjects
 from esplanade.server.link.zone_description import ZoneDescription, encode_description, rules_told
-from esplanade.server.loading import LoadedScene
 from esplanade.server.metrics import Metrics
 from esplanade.server.net.ground_work import GroundWork
 from esplanade.server.net.pending_inputs import PendingInputs
 from esplanade.server.net.route_requests import RouteRequests
 from esplanade.server.net.schedule import Schedule
 from esplanade.server.net.search_budget import SearchBudget
-from esplanade.server.recovery import Recovery
 from esplanade.server.store.store import Store, StoreError
 from esplanade.server.watching import watch_routes, watch_world
 from esplanade.server.world.zone import Zone
 from esplanade.server.zones import ZoneToServe, check_portals, described_portals
 
-FIRST_ACTOR_ID: Final = 2**31
-"""Avatars of people have the numbers of their seats, those of actors begin here."""
-IDS_OF_A_ZONE: Final = 2**26
-SKIPPED_IDS: Final = 10_000
-"""Ids that the owner before may have given away since its last checkpoint."""
-SKIPPED_TICKS: Final = 10
-"""Ticks by which the next owner is ahead of what the clock says, so that none comes again."""
-
 log = structlog.get_logger(__name__)
-
-
-@dataclass(frozen=True)
-class Found:
-    """The state of a zone in the database as its new owner finds it."""
-
-    parts: Mapping[str, Any] = field(default_factory=dict)
-    tick: int = 0
-    seats: list[ClusterSeat] = field(default_factory=list)
 
 
 @dataclass(eq=False)
@@ -151,71 +124,6 @@ class HostedZone:
             self.ticker.stop()
 
 
-async def found_in(store: Store, zone: str, loaded: LoadedScene, tick_s: float) -> Found:
-    """Read what the owner before has left.
-
-    Raises
-    ------
-    StoreError
-        The database does not answer.
-    """
-    kept, seats = await store.read(partial(_read, zone))
-    parts = checkpointing.unpacked(kept)
-    if kept is None:
-        return Found(seats=seats)
-    tick = kept.tick + round(kept.ago_us / 1e6 / tick_s) + SKIPPED_TICKS
-    if parts and parts[checkpointing.SCENE] != digest_of(loaded.scene):
-        log.info("the scene is another one than before, everybody goes to a spawn", zone=zone)
-        parts = {}
-    return Found(parts, tick, seats)
-
-
-def _read(zone: str, connection: Any) -> tuple[SavedZone | None, list[ClusterSeat]]:
-    return saved_in(connection, zone), seats_in(connection, zone)
-
-
-def digest_of(scene: Scene) -> str:
-    """The digest by which scenes are told apart."""
-    return hashlib.sha256(scene.model_dump_json().encode()).hexdigest()
-
-
-def build(zone: ZoneToServe, place: int, found: Found) -> tuple[Any, Zone, list[float]]:
-    """Build the world of a zone that goes on from what was found; `place` is its place among all.
-
-    It takes a while, and is meant for a thread.
-
-    Raises
-    ------
-    LoadingError
-        The scene cannot be run.
-    """
-    first = FIRST_ACTOR_ID + place * IDS_OF_A_ZONE
-    end = first + IDS_OF_A_ZONE
-    key = SceneKey.of(zone.loaded.scene.name, "", None)
-    if found.parts:
-        known = set(found.parts[checkpointing.ZONE]["people"]["ids"].tolist())
-        waiting = [
-            (KeptSeat(seat.person, seat.name, "", (), (0.0, 0.0, 0.0)), 0.0)
-            for seat in found.seats
-            if seat.person in known
-        ]
-        begin = min(int(found.parts[checkpointing.NEXT_ID]) + SKIPPED_IDS, end - 1)
-        recovery = Recovery(
-            key,
-            Parts(),
-            Block(begin, end),
-            found.parts[checkpointing.ZONE],
-            found.tick,
-            left=Left(waiting),
-        )
-        try:
-            return build_world(zone.loaded, zone.settings, recovery)
-        except CheckpointError as error:
-            log.warning("the checkpoint cannot be used, the zone begins anew", why=str(error))
-    recovery = Recovery(key, Parts(), Block(first, end), None, found.tick)
-    return build_world(zone.loaded, zone.settings, recovery)
-
-
 @asynccontextmanager
 async def hosted_zone(
     zone: ZoneToServe,
@@ -248,7 +156,7 @@ async def hosted_zone(
         watch_world(world, population, metrics)
         described = {"storeys": storeys, **described_portals(zone, scenes)}
         description = _description(zone, world, described)
-        await store.write(partial(_keep_described, tenure, encode_description(description)))
+        await store.write(partial(_keep_description, tenure, encode_description(description)))
         searching = stack.enter_context(ThreadPoolExecutor(1, thread_name_prefix="routes"))
         routes = RouteRequests(world, searching, SearchBudget())
         watch_routes(routes, metrics)
@@ -331,8 +239,8 @@ def _watch(
     )
 
 
-def _keep_described(tenure: Tenure, described: bytes, connection: Any) -> None:
-    keep_described(connection, tenure.claim, described)
+def _keep_description(tenure: Tenure, described: bytes, connection: Any) -> None:
+    keep_description(connection, tenure.claim, described)
 
 
 def _description(

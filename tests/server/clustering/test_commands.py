@@ -127,9 +127,11 @@ async def test_zones_move_and_hosts_end_while_people_stay(at_town: Cluster) -> N
 
         assert ben.welcome is not None
         person, token = ben.id, ben.welcome.resume
-        await done(at_town, "drain", at_town.gateways[1].name)
+        drained = at_town.gateways[1]
+        await done(at_town, "drain", drained.name)
         _, code = await ben.last_words()
         assert code == CloseCode.GOING_AWAY
         async with back(east, token) as again:
             assert again.id == person
             await sees(ann, again)
+        assert await asyncio.to_thread(drained.end) == 0

@@ -157,6 +157,19 @@ async def test_only_the_newest_generation_steers(hosted: Hosted) -> None:
     assert hosted.batches.refused["generation"] == 2
 
 
+async def test_what_an_older_client_wanted_in_the_same_tick_is_void(hosted: Hosted) -> None:
+    hosted.seats(seat(ANN, 1))
+    hosted.tick()
+    hosted.steer(ANN, 1, 5)
+    hosted.send("west", held=[(ANN, 2)])
+    assert hosted.tick().acks == {}
+    assert not hosted.world.moves(ANN)
+    hosted.steer(ANN, 2, 1, "west")
+    hosted.seats(seat(ANN, 3))
+    assert hosted.tick().attached == [(3, ANN)]
+    assert not hosted.world.moves(ANN)
+
+
 async def test_a_batch_that_comes_twice_late_or_for_another_owner_has_no_effect(
     hosted: Hosted,
 ) -> None:
