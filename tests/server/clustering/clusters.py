@@ -28,7 +28,7 @@ HOSTS: Final = 3
 """An owner for each zone, and one that stands by."""
 GATEWAYS: Final = 2
 
-RESUME_S: Final = 30.0
+RESUME_S: Final = 12.0
 
 
 class Said(NamedTuple):
