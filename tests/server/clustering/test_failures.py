@@ -3,6 +3,7 @@
 import asyncio
 import math
 import signal
+from contextlib import AsyncExitStack
 
 import pytest
 from websockets.exceptions import ConnectionClosed
@@ -21,6 +22,7 @@ PLACE = (6.0, 10.0, 0)
 OTHER = (6.0, 12.0, 0)
 LEASE_S = 3.0
 SEEN_M = 0.02
+RACES = 5
 
 
 def people_of(client: Client) -> list[str]:
@@ -150,6 +152,31 @@ async def test_a_token_at_two_gateways_steers_at_the_later_one(at_town: Cluster)
             assert code == CloseCode.REPLACED
             assert later.id == ann.id
             await walk(later, 1.0)
+
+
+async def test_of_two_who_take_a_seat_at_once_one_steers(at_town: Cluster) -> None:
+    east, west = at_town.ports
+    async with AsyncExitStack() as stack:
+        ann = await stack.enter_async_context(joined(east, "Ann", PLACE))
+        assert ann.welcome is not None
+        person, token = ann.id, ann.welcome.resume
+        for _ in range(RACES):
+            both = [await stack.enter_async_context(connected(port)) for port in (east, west)]
+            hello = Hello(name="Ann", version=VERSION, resume=token)
+            await asyncio.gather(*(each.send(hello) for each in both))
+            ends = [asyncio.create_task(each.last_words()) for each in both]
+            ended, _ = await asyncio.wait(ends, return_when=asyncio.FIRST_COMPLETED)
+            assert [end.result()[1] for end in ended] == [CloseCode.REPLACED]
+            [(winner, end)] = [
+                pair for pair in zip(both, ends, strict=True) if pair[1] not in ended
+            ]
+            end.cancel()
+            await asyncio.gather(end, return_exceptions=True)
+            await winner.wait_for(lambda one=winner: one.welcome is not None and one.tick > 0)
+            assert winner.welcome is not None
+            assert winner.id == person
+            token = winner.welcome.resume
+            await walk(winner, 0.3)
 
 
 async def test_a_broker_that_is_away_for_a_second_cuts_nobody_off(
