@@ -44,6 +44,8 @@ def main(words: Sequence[str] | None = None) -> int:
     except (OSError, WorldError) as error:
         sys.stderr.write(f"make cluster: {error}\n")
         return 2
+    # Whoever ends this ends what it has begun.
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
         return run(options, zones)
     except pytest.skip.Exception as missing:

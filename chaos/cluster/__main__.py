@@ -2,6 +2,7 @@
 
 import argparse
 import asyncio
+import signal
 import sys
 import tempfile
 from pathlib import Path
@@ -28,6 +29,8 @@ def main() -> int:
     parser.add_argument("--seconds", type=float, default=120.0, help="of faults [120]")
     parser.add_argument("--bots", type=int, default=20, help="bots that live in it [20]")
     options = parser.parse_args()
+    # Whoever ends this ends what it has begun.
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
     with (
         tempfile.TemporaryDirectory(prefix="esplanade-chaos-") as folder,
         nats_server() as broker,
