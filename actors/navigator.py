@@ -94,7 +94,7 @@ class Navigator:
         self._standing = StandingPeople()
         self.table = AgentTable(self.plan.slices)
         """Every actor's state; read it freely between two ticks."""
-        self.planning_interval = PlanningInterval(self.plan.interval_ticks)
+        self.planning_interval = PlanningInterval(self.plan.interval_ticks(tick_s))
         """At which actors are planned from the next tick on; its `ticks` may be changed."""
         self.tracing = Tracing(self._batch, self.plan, tick_s)
 
@@ -532,7 +532,7 @@ class Navigator:
             agents.headings[rows].tolist(),
             agents.reasons[rows].tolist(),
             trips.wanted[rows].tolist(),
-            agents.planned[rows],
+            agents.planned[rows].copy(),
             trips.outcomes[rows].tolist(),
         )
         for row, (place, layer, z_m, velocity, heading, reason, goal, way, outcome) in enumerate(
@@ -547,9 +547,10 @@ class Navigator:
                 _REASONS[reason],
                 None if math.isnan(goal[0]) else tuple(goal),
                 self.plan.slice_s,
-                way.copy(),
-                outcome=Outcome(outcome) if outcome else None,
-                in_the_way=self.in_the_way(row) if table.in_the_way else None,
+                way,
+                None,
+                Outcome(outcome) if outcome else None,
+                self.in_the_way(row) if table.in_the_way else None,
             )
 
     def outcome(self, row: int) -> Outcome | None:
