@@ -524,6 +524,7 @@ class Navigator:
     def _states(self, rows: slice) -> Iterator[ActorState]:
         """The states of the actors in some rows; whole columns are turned into numbers at once."""
         agents, trips, table = self.table.agents, self.table.trips, self.table
+        slice_s = self.plan.slice_s
         columns = (
             agents.positions[rows].tolist(),
             agents.layers[rows].tolist(),
@@ -546,7 +547,7 @@ class Navigator:
                 heading,
                 _REASONS[reason],
                 None if math.isnan(goal[0]) else tuple(goal),
-                self.plan.slice_s,
+                slice_s,
                 way,
                 None,
                 Outcome(outcome) if outcome else None,
