@@ -94,7 +94,7 @@ class Navigator:
         self._standing = StandingPeople()
         self.table = AgentTable(self.plan.slices)
         """Every actor's state; read it freely between two ticks."""
-        self.planning_interval = PlanningInterval(self.plan.interval_ticks)
+        self.planning_interval = PlanningInterval(self.plan.interval_ticks(tick_s))
         """At which actors are planned from the next tick on; its `ticks` may be changed."""
         self.tracing = Tracing(self._batch, self.plan, tick_s)
 
@@ -524,6 +524,7 @@ class Navigator:
     def _states(self, rows: slice) -> Iterator[ActorState]:
         """The states of the actors in some rows; whole columns are turned into numbers at once."""
         agents, trips, table = self.table.agents, self.table.trips, self.table
+        slice_s = self.plan.slice_s
         columns = (
             agents.positions[rows].tolist(),
             agents.layers[rows].tolist(),
@@ -532,7 +533,7 @@ class Navigator:
             agents.headings[rows].tolist(),
             agents.reasons[rows].tolist(),
             trips.wanted[rows].tolist(),
-            agents.planned[rows],
+            agents.planned[rows].copy(),
             trips.outcomes[rows].tolist(),
         )
         for row, (place, layer, z_m, velocity, heading, reason, goal, way, outcome) in enumerate(
@@ -546,10 +547,11 @@ class Navigator:
                 heading,
                 _REASONS[reason],
                 None if math.isnan(goal[0]) else tuple(goal),
-                self.plan.slice_s,
-                way.copy(),
-                outcome=Outcome(outcome) if outcome else None,
-                in_the_way=self.in_the_way(row) if table.in_the_way else None,
+                slice_s,
+                way,
+                None,
+                Outcome(outcome) if outcome else None,
+                self.in_the_way(row) if table.in_the_way else None,
             )
 
     def outcome(self, row: int) -> Outcome | None:

@@ -19,14 +19,14 @@ class PlanningInterval:
     """
 
     def __init__(self, ticks: int = 1) -> None:
-        """With an interval of one tick everybody is due in each.
+        """Begin with an interval; with one of one tick everybody is due in each.
 
         Raises
         ------
         ValueError
             The interval is no number of ticks.
         """
-        self.ticks = ticks
+        self.ticks = self.usual = ticks
         self.count = 0
         """Ticks in which actors were planned so far."""
 
@@ -58,7 +58,7 @@ class PlanningInterval:
         SavedAgentsError
             It is no interval; nothing is changed then.
         """
-        ticks, count = saved.get("ticks", 1), saved.get("count", 0)
+        ticks, count = saved.get("ticks", self.usual), saved.get("count", 0)
         if not (isinstance(ticks, int) and isinstance(count, int) and ticks >= 1 and count >= 0):
             raise SavedAgentsError(f"the planning interval of saved agents is {dict(saved)!r}")
         self._ticks, self.count = ticks, count

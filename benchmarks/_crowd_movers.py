@@ -89,7 +89,7 @@ class Esplanade:
     def __init__(self, crowd: Crowd, interval: int = 1) -> None:
         self.name = "esplanade" if interval == 1 else f"esplanade, interval {interval}"
         self._places = crowd.places
-        plan = PlanModel(threads=1, interval_ticks=interval)
+        plan = PlanModel(threads=1, interval_s=interval * crowd.tick_s)
         self._navigator = Navigator(crowd.grid, crowd.tick_s, plan=plan)
         body = ActorParameters(
             radius_m=RADIUS_M,

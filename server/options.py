@@ -55,8 +55,8 @@ _WORLD: Final = {
     "seed": Setting("seed of everything random in the world", Whole(0, SEED_LIMIT), 0),
     "tick_rate": Setting("ticks of the world", Whole(5, 60), 20, "per second"),
     "planning_interval": Setting(
-        "ticks from one planning of an actor to its next; without it, as few as the machine keeps "
-        "time with",
+        "ticks from one planning of an actor to its next; without it, a tenth of a second, or more "
+        "where the machine does not keep time",
         Whole(1, 4),
         None,
         "ticks",

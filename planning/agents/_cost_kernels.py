@@ -50,6 +50,10 @@ class Counts(NamedTuple):
     ahead: int
 
 
+NOT_COUNTED = Counts(-1, 0, 0, 0)
+"""Nobody has been listed yet."""
+
+
 @kernel
 def room_for_near() -> Near:
     """Room for those who are near one place."""

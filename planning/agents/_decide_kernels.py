@@ -23,6 +23,7 @@ from esplanade.planning.agents._perturb_kernels import (
     update_path,
 )
 from esplanade.planning.agents._reason_kernels import decided_reason
+from esplanade.planning.agents._reservation_kernels import conflict
 from esplanade.planning.agents._search_kernels import (
     FOUND,
     NO_PATH,
@@ -36,7 +37,13 @@ from esplanade.planning.agents._step_kernels import control_toward, last_check, 
 from esplanade.planning.agents._task_kernels import SUB, Task, World, metres_left, needed_clearance
 from esplanade.planning.agents.agents import BLOCKED, GIVING_WAY, MOVING, Agents, Decisions
 from esplanade.planning.compiled.jit import borrowing, inlined, kernel
-from esplanade.planning.grid._grid_kernels import anchor_at, clearance_at, length
+from esplanade.planning.grid._grid_kernels import (
+    anchor_at,
+    clearance_at,
+    floor_of,
+    follow,
+    length,
+)
 from esplanade.planning.grid._side_kernels import is_cut_off
 from esplanade.planning.people._prediction_kernels import Prediction
 from esplanade.planning.routes._legal_way_kernels import ROUNDING_CELLS
@@ -156,11 +163,11 @@ def decide(
 ) -> None:
     """Plan a path for each actor that is due, and wish for a velocity along the path of each.
 
-    Actors that are not `due` (A,) go on along their followed paths; those without one, or inside
-    something, are planned in any tick. Followed paths, seen from now, are
-    `world.reservations.paths`. The actors are first..last of those listed by their places now:
-    neighbours look at the same ground and people, which stay in the cache. The speeds of `moves`
-    are parts of each actor's own.
+    Actors that are not `due` (A,) go on along their followed paths; those without one, with one
+    that is illegal soon, or inside something, are planned in any tick. Followed paths, seen from
+    now, are `world.reservations.paths`. The actors are first..last of those listed by their places
+    now: neighbours look at the same ground and people, which stay in the cache. The speeds of
+    `moves` are parts of each actor's own.
     """
     rules = world.rules[0]
     slices = out.paths.shape[1]
@@ -190,6 +197,7 @@ def decide(
             due[a]
             or not agents.known[a]
             or clearance_at(world.grid, task.body, task.cell, task.x, task.y) < 0.0
+            or not _is_legal_soon(world, task, kept)
         )
         if out.replanned[a]:
             status, switched = _replan(
@@ -241,6 +249,28 @@ def decide(
         out.reasons[a] = decided_reason(
             agents, task, away, lost, path, status, switched, dodged, world.step_s
         )
+
+
+@borrowing
+def _is_legal_soon(world: World, task: Task, path: NDArray[np.float64]) -> bool:
+    """Whether the first slices of a followed path, as many as the rules say, keep clear of walls
+    and of reservations.
+
+    By how much an actor lags behind its path does not count, nor do limits of speed: `limited` and
+    `walk` see to those.
+    """
+    need = needed_clearance(world, task)
+    cell = task.cell
+    for k in range(min(world.rules[0]["checked_slices"], len(path) - 1)):
+        ax, ay = path[k, 0], path[k, 1]
+        bx, by = path[k + 1, 0], path[k + 1, 1]
+        feet_m = floor_of(world.grid, cell)
+        cell = follow(world.grid, cell, bx, by)
+        if clearance_at(world.grid, task.body, cell, bx, by) < need:
+            return False
+        if conflict(world.reservations, task.me, feet_m, k, ax, ay, bx, by)[0]:
+            return False
+    return True
 
 
 @inlined

@@ -21,6 +21,7 @@ from esplanade.planning.agents._branch_kernels import (
     look_up,
 )
 from esplanade.planning.agents._cost_kernels import (
+    NOT_COUNTED,
     Near,
     look_around,
     motion_cost,
@@ -313,7 +314,7 @@ def search(
             gy = 0.0
         price = risk_price(task, step * step_s) * ds
         k = step * SUB
-        counts = look_around(world, task, k, cell, x, y, length(vx, vy), near)
+        counts = NOT_COUNTED
         before_x = vx if n == 0 else (x - node[n]["half_x"]) / ds
         before_y = vy if n == 0 else (y - node[n]["half_y"]) / ds
         # Clearance falls by no more than the distance: far from walls no child is checked.
@@ -369,6 +370,8 @@ def search(
                 continue
             # Risk is never negative, so a node that already costs too much is given up at once.
             most = (min(room_s, least) - worth) / price if accumulate and price > 0.0 else np.inf
+            if counts.met < 0:  # most nodes of a good path have no child that comes so far
+                counts = look_around(world, task, k, cell, x, y, length(vx, vy), near)
             blocked, soft = others_weight(world, task, near, counts, k, x, y, hx, hy, ex, ey)
             if blocked or soft >= most:
                 continue

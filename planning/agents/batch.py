@@ -45,19 +45,24 @@ class PlanModel:
     """Time step of the search (delta), seconds; the risk field has two slices in each."""
     steps: int = 9
     """Steps to the horizon."""
-    interval_ticks: int = 1
-    """Ticks from one planning of an agent to its next; in between it follows the path it has."""
+    interval_s: float = 0.1
+    """Time from one planning of an agent to its next, seconds, in whole ticks and at least one; in
+    between it follows the path it has."""
     threads: int = 2
     """Threads that share the work; the result does not depend on their number."""
 
     def __post_init__(self) -> None:
-        if self.interval_ticks < 1:
-            raise ValueError(f"interval_ticks must be at least 1, got {self.interval_ticks}")
+        if not 0.0 <= self.interval_s <= 1.0:
+            raise ValueError(f"interval_s must be at least 0 and at most 1, got {self.interval_s}")
 
     @property
     def slices(self) -> int:
         """Slices of the risk field after now."""
         return self.steps * SUB
+
+    def interval_ticks(self, tick_s: float) -> int:
+        """Ticks of `tick_s` seconds from one planning of an agent to its next."""
+        return max(1, round(self.interval_s / tick_s))
 
     @property
     def slice_s(self) -> float:

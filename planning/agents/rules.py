@@ -439,6 +439,17 @@ class RuleModel(BaseModel):
             "somebody has got in its way, and expects what that path costs.",
         ),
     ] = True
+    checked_slices: Annotated[
+        int,
+        _rule(
+            "search",
+            "slices",
+            0,
+            18,
+            "So many first slices of the path of an actor that is not due are checked against "
+            "walls and reservations; if they have become illegal, it is planned all the same.",
+        ),
+    ] = 6
     fine_steps: Annotated[
         int,
         _rule(

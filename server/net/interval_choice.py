@@ -6,7 +6,7 @@ import numpy as np
 import structlog
 
 MOST_TICKS: Final = 4
-"""Actors are planned at least in every fourth tick, however slow the machine is."""
+"""The interval goes up to this at most, however slow the machine is."""
 WINDOW_TICKS: Final = 20
 """The room that ticks leave is the median of so many; a single slow tick changes nothing."""
 LITTLE_ROOM: Final = 0.1
@@ -28,10 +28,12 @@ class IntervalChoice:
     ten times as long, reckoned as if all planning took longer by as much as it is done more often.
     """
 
-    def __init__(self, ticks: int, fixed: int | None = None) -> None:
-        """Begin with the interval of a world, or stay at a `fixed` one."""
-        self.ticks = ticks if fixed is None else fixed
+    def __init__(self, ticks: int, fixed: int | None = None, least: int = 1) -> None:
+        """Begin with the interval of a world, and never go below the `least`, or stay at a `fixed`
+        one."""
+        self.ticks = max(least, ticks) if fixed is None else fixed
         """Ticks from one planning of an actor to its next."""
+        self._least = least
         self._is_fixed = fixed is not None
         self._rooms: list[float] = []
         self._shares: list[float] = []
@@ -66,7 +68,7 @@ class IntervalChoice:
             return
         more = share / (self.ticks - 1) if self.ticks > 1 else 0.0
         self._windows = self._windows + 1 if room - more >= ENOUGH_ROOM else 0
-        if self.ticks > 1 and self._windows >= ENOUGH_WINDOWS:
+        if self.ticks > self._least and self._windows >= ENOUGH_WINDOWS:
             self._windows = 0
             self.ticks -= 1
             log.info("the planning interval goes down again", **self._told(room, share))

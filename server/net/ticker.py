@@ -54,7 +54,7 @@ class Ticker:
         self._metrics = metrics
         self._thread = thread
         self._console = console
-        self._interval = IntervalChoice(world.planning_interval)
+        self.planning(None)
         self.tap: Tap | None = None
         """Where the ticks go that operators see."""
         self.trajectories: WorldTrajectories | None = None
@@ -71,7 +71,7 @@ class Ticker:
         metrics.total("ticks", "Ticks of the world", lambda: world.tick)
         metrics.gauge(
             "planning_interval_ticks",
-            "Ticks from one planning of an actor to its next, 1 where there is time for all",
+            "Ticks from one planning of an actor to its next",
             lambda: world.planning_interval,
         )
         pace = schedule.pace
@@ -102,7 +102,10 @@ class Ticker:
 
     def planning(self, interval: int | None) -> Self:
         """The same, planning each actor once in so many ticks; None: as often as there is time."""
-        self._interval = IntervalChoice(self._world.planning_interval, interval)
+        zone = self._world
+        self._interval = IntervalChoice(
+            zone.planning_interval, interval, zone.usual_planning_interval
+        )
         return self
 
     def stop(self) -> None:

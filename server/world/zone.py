@@ -283,6 +283,11 @@ class Zone:
         return self._population.navigator.planning_interval.ticks
 
     @property
+    def usual_planning_interval(self) -> int:
+        """The same where there is time enough."""
+        return self._population.navigator.planning_interval.usual
+
+    @property
     def grid(self) -> LayeredGrid:
         """The ground of the zone; its shape never changes, its doors do, between two ticks."""
         return self._grid

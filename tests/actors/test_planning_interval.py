@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from esplanade.actors import ActorParameters, GoTo, Navigator, Population, Reason
 from esplanade.actors.planning_interval import PlanningInterval
-from esplanade.planning import LayeredGrid, PlanModel, SavedAgentsError, Scene
+from esplanade.planning import LayeredGrid, PlanModel, RuleModel, SavedAgentsError, Scene
 from tests.actors.worlds import BODY, TICK_S, along, holds, plaza, run
 
 STREAMS = Scene.open_space((0.0, 0.0, 16.0, 10.0))
@@ -17,10 +17,10 @@ WALKS = {f"p{k}": along((8.0 + k, 1.0), (6.0 + k, 9.0), speed_mps=0.8) for k in 
 ACTORS = 12
 
 
-def streams(interval: int = 1, threads: int = 1) -> Navigator:
+def streams(interval: int = 1, threads: int = 1, checked_slices: int = 6) -> Navigator:
     """Two streams of actors against each other, among people who cross."""
-    plan = PlanModel(threads=threads, interval_ticks=interval)
-    made = Navigator(STREAMS, TICK_S, plan=plan)
+    plan = PlanModel(threads=threads, interval_s=interval * TICK_S)
+    made = Navigator(STREAMS, TICK_S, plan=plan, rules=RuleModel(checked_slices=checked_slices))
     for n in range(ACTORS):
         start, goal = (2.0, 14.0)[:: 1 if n % 2 else -1]
         made.add_actor(f"a{n}", (start, 1.5 + 0.6 * n), (goal, 8.0 - 0.6 * n), BODY)
@@ -53,9 +53,11 @@ def test_each_actor_is_due_once_in_an_interval(interval: int, actors: int, count
 
 
 def test_an_interval_is_a_number_of_ticks() -> None:
-    for made in (PlanningInterval, lambda ticks: PlanModel(interval_ticks=ticks)):
-        with pytest.raises(ValueError, match="at least"):
-            made(0)
+    with pytest.raises(ValueError, match="at least one tick, got 0"):
+        PlanningInterval(0)
+    for interval_s in (-0.1, math.nan, math.inf):
+        with pytest.raises(ValueError, match="interval_s must be at least 0"):
+            PlanModel(interval_s=interval_s)
     turns = PlanningInterval(3)
     with pytest.raises(ValueError, match="at least one tick, got -1"):
         turns.ticks = -1
@@ -65,10 +67,17 @@ def test_an_interval_is_a_number_of_ticks() -> None:
     assert turns.save() == {"ticks": 3, "count": 0}
 
 
+@pytest.mark.parametrize(("tick_s", "ticks"), [(0.1, 1), (0.05, 2), (1 / 60, 6), (0.3, 1)])
+def test_the_usual_interval_is_a_tenth_of_a_second_in_whole_ticks(tick_s, ticks) -> None:
+    nav = Navigator(STREAMS, tick_s)
+    assert (nav.planning_interval.ticks, nav.planning_interval.usual) == (ticks, ticks)
+    nav.close()
+
+
 @pytest.mark.parametrize("threads", [1, 2])
 def test_those_who_are_due_decide_as_ever_and_the_others_go_on(threads: int) -> None:
     """From one state, with everybody due and with every third."""
-    every, third = streams(1, threads), streams(1, threads)
+    every, third = streams(1, threads, 0), streams(1, threads, 0)
     for made in (every, third):
         ticks(made, 25)
     third.planning_interval.ticks = 3
@@ -133,12 +142,13 @@ def test_saved_actors_go_on_with_the_same_turns() -> None:
         nav.close()
 
 
-def test_actors_that_were_saved_before_there_were_turns_are_planned_in_every_tick() -> None:
+def test_actors_that_were_saved_before_there_were_turns_have_the_usual_ones() -> None:
     made, again = streams(3), streams(2)
+    again.planning_interval.ticks = 4
     header, arrays = made.save()
     del header["planning"]
     again.load(header, arrays)
-    assert again.planning_interval.save() == {"ticks": 1, "count": 0}
+    assert again.planning_interval.save() == {"ticks": 2, "count": 0}
     for nav in (made, again):
         nav.close()
 
@@ -163,7 +173,7 @@ def test_a_tick_that_fails_takes_nobodys_turn(monkeypatch: pytest.MonkeyPatch) -
 
 
 def test_a_trace_tells_who_was_not_due() -> None:
-    made = streams(2)
+    made = streams(2, checked_slices=0)
     made.tracing.wanted = True
     ticks(made, 20)
     told = {made.trace(f"a{n}").winner == "not_due" for n in range(ACTORS)}

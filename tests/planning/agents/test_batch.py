@@ -16,6 +16,7 @@ from esplanade.planning import (
     LayeredGrid,
     PlanModel,
     RiskModel,
+    RuleModel,
     Scene,
 )
 from esplanade.planning.agents._step_kernels import _separation
@@ -337,6 +338,27 @@ def test_who_is_not_due_goes_on_along_the_path_that_it_has(batch) -> None:
     crowd.known[1] = False
     decisions, _, _ = batch.tick(crowd, guides, people, TICK_S, due)
     assert decisions.replanned.all()
+
+
+@pytest.mark.parametrize("slices", [0, 6])
+def test_whose_path_is_soon_illegal_is_planned_though_it_is_not_due(slices) -> None:
+    """Somebody of higher priority stands in the way all at once, a second ahead of the one."""
+    batch = Batch(open_grid(8.0), PLAN, RiskModel(), rules=RuleModel(checked_slices=slices))
+    crowd = crowd_of([(7.0, 7.0), (2.0, 3.0), (2.0, 5.0)], [(6.4, 7.0), (7.0, 3.0), (7.0, 5.0)])
+    guides = guides_of(batch.grid, crowd)
+    nobody = walking([], [])
+    for _ in range(6):
+        crowd.cells[:] = batch.grid.on_ground(crowd.positions, np.zeros(3))[1]
+        step(crowd, *decided(batch, crowd, guides, nobody))
+    crowd.positions[0] = crowd.positions[1] + np.array([1.2, 0.0])
+    crowd.goals[0] = crowd.positions[0] + np.array([1.1, 0.0])
+    guides = guides_of(batch.grid, crowd)
+    crowd.known[0] = False
+    crowd.cells[:] = batch.grid.on_ground(crowd.positions, np.zeros(3))[1]
+    decisions, _, _ = batch.tick(crowd, guides, nobody, TICK_S, np.zeros(3, dtype=bool))
+    assert decisions.replanned.tolist() == [True, slices > 0, False]
+    assert decisions.renewed[1] == (slices > 0)
+    batch.close()
 
 
 def test_an_old_path_is_read_on_and_lengthened(batch) -> None:

@@ -56,7 +56,8 @@ async def test_a_trace_tells_the_last_decision_of_an_actor(serving: Serving) -> 
         for path in ("previous", "searched", "perturbed"):
             if found[path] is not None:
                 add_up(found[path]["cost"])
-        assert found["why"]["code"] in {"first", "forced", "search", "perturbation", "kept"}
+        codes = {"first", "forced", "search", "perturbation", "kept", "not_due"}
+        assert found["why"]["code"] in codes
         assert found["why"]["text"]
         assert {"taken_s", "before_s", "hysteresis_s"} <= found["why"]["arguments"].keys()
         assert [round(each["t_s"], 1) for each in found["risk"]] == [

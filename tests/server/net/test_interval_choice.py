@@ -55,6 +55,12 @@ def test_a_single_slow_tick_and_a_slow_world_without_planning_change_nothing() -
     assert set(run(choice, 500, 0.001, other_s=0.08)) == {1}
 
 
+def test_it_never_goes_below_the_least() -> None:
+    assert set(run(Choice(1, least=2), 500, 0.001)) == {2}
+    found = run(Choice(4, least=2), 10 * WINDOW_TICKS * ENOUGH_WINDOWS, 0.001)
+    assert (found[-1], min(found)) == (2, 2)
+
+
 def test_one_that_is_fixed_stays_and_others_are_told_of() -> None:
     assert set(run(Choice(1, fixed=2), 500, 0.5)) == {2}
     with structlog.testing.capture_logs() as lines:

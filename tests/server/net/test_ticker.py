@@ -23,7 +23,7 @@ async def test_ticks_follow_one_another_at_their_rate(serving: Serving) -> None:
         assert ticks == list(range(ticks[0], ticks[0] + 20))
 
 
-@pytest.mark.parametrize(("given", "wanted"), [(None, 1), (2, 2)])
+@pytest.mark.parametrize(("given", "wanted"), [(None, 2), (1, 1)])
 async def test_the_planning_interval_of_the_settings_is_kept_to_and_told(
     serving: Serving, monkeypatch: pytest.MonkeyPatch, given: int | None, wanted: int
 ) -> None:

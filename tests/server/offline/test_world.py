@@ -85,7 +85,7 @@ def test_changes_of_parameters_stand_at_their_tick(room: Path, tmp_path: Path) -
 
 
 def test_the_planning_interval_stands_where_it_holds(room: Path, tmp_path: Path) -> None:
-    for given, wanted in (({}, 1), ({"planning_interval": 3}, 3)):
+    for given, wanted in (({}, 2), ({"planning_interval": 3}, 3)):
         out = tmp_path / f"{wanted}.csv"
         with OfflineWorld(room, actors=1, seed=1, **given) as world:
             world.write(out)

@@ -153,7 +153,7 @@ class WorldPanel extends CommandingPanel {
 
 function planned(interval: number): string {
   if (interval === 1) return "each actor in every tick";
-  return `each actor once in ${interval} ticks, to keep time`;
+  return `each actor once in ${interval} ticks`;
 }
 
 function span(seconds: number): string {
