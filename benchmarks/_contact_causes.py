@@ -69,8 +69,8 @@ def contact_causes(seen: Floats, bodies: Mapping[int, SeenBody], tick_s: float) 
 
     Notes
     -----
-    Contacts of less than a centimetre are not seen, so that the server counts more of them. Cost
-    O(ticks) for each pair of an actor and a person.
+    Contacts of less than a centimetre are not seen. Others are seen by the client alone, which is
+    told of some moves a tick late. Cost O(ticks) for each pair of an actor and a person.
     """
     ids = [int(one) for one in np.unique(seen[:, 1]) if int(one) in bodies]
     first, last = int(seen[:, 0].min()), int(seen[:, 0].max())

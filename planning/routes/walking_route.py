@@ -28,8 +28,7 @@ Point = tuple[float, float, float]
 Route = tuple[Point, ...]
 """The ends of straight legs, the goal last."""
 
-STEP_M: Final = 0.07
-"""Routes are walked in steps as long as those of people in a tick, so that people get along."""
+STEP_M: Final = 0.2
 TURN_COS: Final = math.cos(math.radians(2.0))
 
 PIECE_CELLS: Final = 8192
