@@ -6,8 +6,9 @@
 
 The server runs in a process of its own and the visitors in another, over real sockets. One more
 client stands still and observes: the positions of all avatars that it is sent in every tick are
-checked against the shapes of the scene file. The exit code is 1 if an avatar was inside an
-obstacle or stood on nothing.
+checked against the shapes of the scene file, and contacts are judged by who moved. Goals of trips
+that end without a way are listed by name. The exit code is 1 if an avatar was inside an obstacle or
+stood on nothing, or if a trip ended without a way where `find_path` finds one.
 """
 
 import argparse
@@ -22,12 +23,16 @@ from typing import Any
 
 import numpy as np
 import uvloop
+from benchmarks._contact_causes import SeenBody, contact_causes
+from benchmarks._lost_trips import LostTrips
 from benchmarks._position_checks import Points, clearances, inside, unsupported
 
 from esplanade import bots
 from esplanade.bots.events import SnapshotEvent
 from esplanade.planning import Scene
 from esplanade.planning.scene.scene_file import read_scene
+from esplanade.protocol import Kind
+from esplanade.protocol.messages import Enter
 from esplanade.server import logs
 from esplanade.server.app import running
 from esplanade.server.loading import DEFAULT_SCENE
@@ -38,6 +43,7 @@ TOUCHING_M = 0.15
 """The centre of a body is nearer than this to a wall only if it is pressed into the wall."""
 STEP_M = 0.65
 """Nobody may rise or fall by more than this between two ticks."""
+FAULTS = ("inside", "unsupported", "no_way_though_there_is")
 
 
 def main() -> int:
@@ -60,7 +66,7 @@ def main() -> int:
             runs.append(figures)
     if options.json:
         options.json.write_text(json.dumps(runs, indent=1))
-    return int(any(run["inside"] or run["unsupported"] for run in runs))
+    return int(any(run[fault] for run in runs for fault in FAULTS))
 
 
 def _line(name: str, value: str | int | float) -> str:
@@ -78,9 +84,10 @@ def measure(path: Path, options: argparse.Namespace, seed: int) -> dict[str, Any
     here, there = mp.get_context("spawn").Pipe()
     process = mp.get_context("spawn").Process(target=serve, args=(there, settings), daemon=True)
     process.start()
-    seen, visitors = uvloop.run(watch(here.recv(), options.bots, options.seconds, seed))
+    seen, bodies, visitors = uvloop.run(watch(here.recv(), options.bots, options.seconds, seed))
     here.send("end")
-    figures = {**here.recv(), **visitors, **position_figures(read_scene(path), seen)}
+    causes = contact_causes(seen, bodies, settings.tick_s).figures()
+    figures = {**here.recv(), **causes, **visitors, **position_figures(read_scene(path), seen)}
     process.join()
     return figures
 
@@ -91,9 +98,12 @@ def serve(parent: Connection, settings: ServerSettings) -> None:
     async def run() -> None:
         async with running(settings) as server:
             parent.send(server.port)
+            trips = LostTrips(server.world)
+            looking = asyncio.create_task(trips.look())
             await asyncio.to_thread(parent.recv)
-            lost = server.world.feet.lost
-            parent.send({**server.summary(), "walkers_lost": lost})
+            looking.cancel()
+            lost = {"walkers_lost": server.world.feet.lost}
+            parent.send({**server.summary(), **trips.figures(), **lost})
 
     with logs.written(settings):
         uvloop.run(run())
@@ -101,8 +111,8 @@ def serve(parent: Connection, settings: ServerSettings) -> None:
 
 async def watch(
     port: int, visitors: int, seconds: float, seed: int
-) -> tuple[Points, dict[str, Any]]:
-    """The positions of all others that one client is sent, and what became of visitors' walks.
+) -> tuple[Points, dict[int, SeenBody], dict[str, Any]]:
+    """The positions and bodies of all others that one client is sent, and how visitors' walks went.
 
     Positions are float64 (N, 5): tick, id, x, y and z, metres.
     """
@@ -115,22 +125,30 @@ async def watch(
             stdout=asyncio.subprocess.DEVNULL,
         )  # fmt: skip
         rows: list[Points] = []
+        bodies: dict[int, SeenBody] = {}
         async with bots.connect(url, name="Watcher") as watcher:
-            reading = asyncio.create_task(_read(watcher, rows))
+            reading = asyncio.create_task(_read(watcher, rows, bodies))
             code = await bots_process.wait()
             reading.cancel()
         told = json.loads(await asyncio.to_thread(report.read_text))
     if code:
         raise SystemExit(f"some of the visitors failed: exit code {code}")
-    return np.concatenate(rows), {
-        "visitors_lost": told["clients"]["lost"],
-        "walks_without_a_way": told["no_path"],
-    }
+    return (
+        np.concatenate(rows),
+        bodies,
+        {
+            "visitors_lost": told["clients"]["lost"],
+            "walks_without_a_way": told["no_path"],
+        },
+    )
 
 
-async def _read(watcher: bots.Bot, rows: list[Points]) -> None:
+async def _read(watcher: bots.Bot, rows: list[Points], bodies: dict[int, SeenBody]) -> None:
     async for event in watcher.events():
-        if isinstance(event, SnapshotEvent):
+        if isinstance(event, Enter):
+            for each in event.entities:
+                bodies[each.id] = SeenBody(each.kind == Kind.ACTOR, each.radius)
+        elif isinstance(event, SnapshotEvent):
             records = event.records
             ticks = np.full(len(records), event.tick)
             columns = [ticks, records["id"], *event.positions.T, event.heights]

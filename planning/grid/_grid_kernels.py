@@ -144,9 +144,11 @@ def follow_path(
 def surface_at(grid: GridArrays, x: float, y: float, z: float) -> int:
     """Cell of the standing surface nearest in height at a point, else up to two cells aside.
 
-    It is -1 where nobody can stand there either.
+    A surface aside counts as well where that at the point is a metre or more above or below, as a
+    roof is over a gap in the floor. It is -1 where nobody can stand there either.
     """
     j, i = row_and_column(grid, x, y)
+    found = -1
     for ring in range(3):
         best = -1
         least = np.inf
@@ -162,9 +164,12 @@ def surface_at(grid: GridArrays, x: float, y: float, z: float) -> int:
                         if apart < least:
                             least = apart
                             best = cell
-        if best >= 0:
+        if best >= 0 and least < FOLLOW_M:
             return best
-    return -1
+        if found >= 0:
+            break
+        found = best
+    return found
 
 
 @inlined

@@ -64,6 +64,24 @@ def _may_step(grid: GridArrays, cell: int, other: int, step_on_m: float) -> bool
 
 
 @inlined
+def _cell_ahead(
+    grid: GridArrays, cell: int, x: float, y: float, ux: float, uy: float, step_on_m: float
+) -> int:
+    """The cell of a point that a body in a cell comes to along the unit vector u; -1 if none.
+
+    A column without a floor, such as the steep side of a step in a mesh, is passed where the next
+    floor along the way is no higher or lower than a step; over it the body keeps its cell. Barriers
+    stop it where a floor really ends.
+    """
+    other = follow(grid, cell, x, y)
+    if other >= 0 or cell < 0:
+        return other
+    cell_m = grid.layered.cell_m
+    beyond = follow(grid, cell, x + cell_m * ux, y + cell_m * uy)
+    return cell if _may_step(grid, cell, beyond, step_on_m) else -1
+
+
+@inlined
 def walk(
     grid: GridArrays,
     index: BarrierIndex,
@@ -100,7 +118,7 @@ def walk(
             floor = min(floor, float(grid.layered.floors[ahead]))
         placement = Placement(floor, support, height_m, step_on_m, leg_length_m)
         nx, ny = slide(index, placement, bounds, x, y, part * dx, part * dy, clearance)
-        other = follow(grid, cell, nx, ny)
+        other = _cell_ahead(grid, cell, nx, ny, dx / way_m, dy / way_m, step_on_m)
         if not _may_step(grid, cell, other, step_on_m):
             if part * way_m > _SHORTEST_M:
                 part *= 0.5  # two treads at once are too high, one after the other they are not

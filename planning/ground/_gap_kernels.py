@@ -1,7 +1,8 @@
-"""Gaps in the floors of meshes that everybody steps across, on bare arrays.
+"""Gaps in the floors of meshes that bodies step across, on bare arrays.
 
 Floors are often drawn room by room, with a slit under each wall and threshold. Where the centre of
-a column falls into a slit, the floor is missing; it is put back between two neighbours.
+a column falls into a slit, the floor is missing; it is put back between two neighbours. So it is
+where the centre falls on the steep side of a step: there is the floor above or that below.
 """
 
 from typing import NamedTuple
@@ -12,9 +13,13 @@ from numpy.typing import NDArray
 from esplanade.planning.compiled.jit import inlined, kernel
 from esplanade.planning.ground._ledge_kernels import LEAST_STEP_M
 from esplanade.planning.ground._surface_kernels import LEAST_HEADROOM_M, Raster
+from esplanade.planning.ground.layered import LINK_M
 
 GAP = np.dtype([("column", "i4"), ("floor", "f4"), ("ceiling", "f4")])
 """A surface over a gap: its column of the grid, its floor and its ceiling in metres."""
+
+_SAME_M = 1e-2
+"""A hit that is further below or above two floors does not lie between them."""
 
 
 class ColumnSurfaces(NamedTuple):
@@ -45,31 +50,65 @@ def _next_above(heights: NDArray[np.float32], first: int, last: int, z: float) -
     return np.inf
 
 
+@inlined
+def _over_side(
+    heights: NDArray[np.float32], first: int, last: int, low: float, high: float
+) -> tuple[float, float]:
+    """The floor over the steep side of a step, and the height of the next hit above the step.
+
+    The floor is `low` or `high`, whichever is nearer to the highest hit between them; nan where
+    there is none.
+    """
+    side, above = np.nan, np.inf
+    for k in range(first, last):
+        if heights[k] > high + _SAME_M:
+            above = float(heights[k])
+            break
+        if heights[k] >= low - _SAME_M:
+            side = float(heights[k])
+    if np.isnan(side):
+        return np.nan, above
+    return (low if side - low < high - side + _SAME_M else high), above
+
+
 @kernel
 def find_gaps(raster: Raster, hits: Hits, surfaces: ColumnSurfaces, out: NDArray[np.void]) -> int:
-    """Find columns that have nothing between two level floors, west and east or south and north.
+    """Find columns without a floor of their own between two floors that bodies step between.
 
-    `out` (G,) of `GAP` has room for two gaps of each surface. Returns the number of gaps.
+    These lie west and east or south and north; there is nothing in the column where they are level,
+    else the side of the step. Sides of steps may lie aslant between two floors, too. `out` (G,) of
+    `GAP` has room for four gaps of each surface. Returns the number of gaps.
     """
     starts, floors, ceilings = surfaces
     count = 0
     for c in range(raster.ny * raster.nx):
         j, i = c // raster.nx, c % raster.nx
         since = count
-        for axis in range(2):
-            if (0 < i < raster.nx - 1) if axis == 0 else (0 < j < raster.ny - 1):
-                apart = 1 if axis == 0 else raster.nx
+        for axis in range(4):
+            across = axis == 1 or 0 < i < raster.nx - 1
+            if across and (axis == 0 or 0 < j < raster.ny - 1):
+                apart = 1 if axis == 0 else raster.nx + (0, 0, 1, -1)[axis]
                 for a in range(starts[c - apart], starts[c - apart + 1]):
                     for b in range(starts[c + apart], starts[c + apart + 1]):
-                        if abs(floors[a] - floors[b]) > LEAST_STEP_M:
+                        low = float(min(floors[a], floors[b]))
+                        high = float(max(floors[a], floors[b]))
+                        if high - low > LINK_M + _SAME_M:
                             continue
-                        z = 0.5 * (floors[a] + floors[b])
-                        free = True
+                        first, last = hits.starts[c], hits.starts[c + 1]
+                        if high - low <= LEAST_STEP_M:
+                            if axis > 1:
+                                continue
+                            z = high = 0.5 * (low + high)
+                            above = _next_above(hits.heights, first, last, z)
+                        else:
+                            z, above = _over_side(hits.heights, first, last, low, high)
+                        free = not np.isnan(z)
                         for k in range(since, count):
                             free &= abs(out[k]["floor"] - z) >= LEAST_HEADROOM_M
-                        above = _next_above(hits.heights, hits.starts[c], hits.starts[c + 1], z)
+                        for s in range(starts[c], starts[c + 1]):
+                            free &= abs(floors[s] - z) >= LEAST_HEADROOM_M
                         ceiling = min(above, ceilings[a], ceilings[b])
-                        if free and ceiling - z >= LEAST_HEADROOM_M:
+                        if free and ceiling - high >= LEAST_HEADROOM_M:
                             out[count]["column"] = c
                             out[count]["floor"] = z
                             out[count]["ceiling"] = ceiling

@@ -110,7 +110,7 @@ def surfaces_of_triangles(
 
 def _with_gaps(raster: Raster, hits: Hits, surfaces: ColumnSurfaces) -> ColumnSurfaces:
     """Surfaces by column, together with those over gaps between them."""
-    gaps = np.empty(2 * len(surfaces.floors), dtype=GAP)
+    gaps = np.empty(4 * len(surfaces.floors), dtype=GAP)
     gaps = gaps[: find_gaps(raster, hits, surfaces, gaps)]
     floors = np.empty(len(surfaces.floors) + len(gaps), dtype=np.float32)
     both = ColumnSurfaces(np.empty_like(surfaces.starts), floors, np.empty_like(floors))

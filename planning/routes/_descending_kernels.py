@@ -10,6 +10,9 @@ from esplanade.planning.grid._walking_kernels import GroundArrays, walk
 from esplanade.planning.routes._potential_kernels import PotentialValues, direction_at
 from esplanade.planning.scene.heights import SAME_SURFACE_M
 
+_PIECE_M = 0.07
+"""Steps are walked in pieces as long as people's moves in a tick, so that people get along."""
+
 
 @kernel
 def descend(
@@ -65,19 +68,21 @@ def descend(
             corners[count, 2] = floor_of(grid, cell)
             count += 1
             hx, hy = dx, dy
-        cell, x, y = walk(
-            grid,
-            ground.barriers,
-            height_m,
-            step_on_m,
-            leg_length_m,
-            cell,
-            x,
-            y,
-            step * dx,
-            step * dy,
-            clearance,
-        )
-        if cell < 0:
-            return -1
+        pieces = max(1, int(np.ceil(step / _PIECE_M - 1e-9)))
+        for _ in range(pieces):
+            cell, x, y = walk(
+                grid,
+                ground.barriers,
+                height_m,
+                step_on_m,
+                leg_length_m,
+                cell,
+                x,
+                y,
+                step * dx / pieces,
+                step * dy / pieces,
+                clearance,
+            )
+            if cell < 0:
+                return -1
     return -1

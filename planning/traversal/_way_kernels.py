@@ -263,15 +263,16 @@ def _bend_past(
     cells = (first, second)
     heights = (lowest, highest)
     ends = (ax, ay, bx, by)
-    leads, px, py = _bend_from(arrays, near, body, cells, heights, ends, mx, my, AIM_M)
-    if leads:
+    found, px, py = _bend_from(arrays, near, body, cells, heights, ends, mx, my, AIM_M)
+    if found == CLEAR:
         return True, px, py
-    # Between corners that lie aslant the middle of the step is pushed out of the passage.
-    lacks, tx, ty = _tightest(near, body, cells, heights, ends)
-    if lacks < AIM_M:
-        leads, px, py = _bend_from(arrays, near, body, cells, heights, ends, tx, ty, LITTLE_M)
-        if leads:
-            return True, px, py
+    if found == BARRED:
+        # Between corners that lie aslant the middle of the step is pushed out of the passage.
+        lacks, tx, ty = _tightest(near, body, cells, heights, ends)
+        if lacks < AIM_M:
+            found, px, py = _bend_from(arrays, near, body, cells, heights, ends, tx, ty, LITTLE_M)
+            if found == CLEAR:
+                return True, px, py
     # Past the end of what bars the way there may be a gap, such as a door beside its post.
     for cell in cells:
         entry = near.first[cell]
@@ -294,8 +295,8 @@ def _bend_past(
             sx, sy = x0 + part * (x0 - x1), y0 + part * (y0 - y1)
             if room_at(near, body, first, highest, sx, sy)[0] >= body.radius_m - WITHIN_M:
                 continue  # it is open there, and other steps lead around the end
-            leads, px, py = _bend_from(arrays, near, body, cells, heights, ends, sx, sy, AIM_M)
-            if leads:
+            found, px, py = _bend_from(arrays, near, body, cells, heights, ends, sx, sy, AIM_M)
+            if found == CLEAR:
                 return True, px, py
     return False, 0.0, 0.0
 
@@ -310,10 +311,13 @@ def _tightest(
 ) -> tuple[float, float, float]:
     """The point of the straight way between two ends that is nearest to what bars it.
 
-    Returns the distance from it that the body lacks there, and the point.
+    Returns the distance from it that the body lacks there, and the point; or any point where it
+    lacks `AIM_M` or more.
     """
     ax, ay, bx, by = ends
-    best, x, y = np.inf, 0.5 * (ax + bx), 0.5 * (ay + by)
+    mx, my = 0.5 * (ax + bx), 0.5 * (ay + by)
+    reach = body.radius_m + 0.5 * np.hypot(bx - ax, by - ay)
+    best, x, y = np.inf, mx, my
     for cell in cells:
         entry = near.first[cell]
         while entry >= 0:
@@ -323,11 +327,15 @@ def _tightest(
             if climb <= body.step_on_m + TOLERANCE_M:
                 continue
             x0, y0, x1, y1 = barrier["x0"], barrier["y0"], barrier["x1"], barrier["y1"]
+            if point_segment_distance(mx, my, x0, y0, x1, y1) > reach:
+                continue
             apart, cx, cy, _, _ = _closest(x0, y0, x1, y1, ax, ay, bx, by, False)
             if climb <= body.leg_length_m + TOLERANCE_M:
                 apart += max(0.0, body.radius_m - LOW_ROOM_M)
             if apart < best:
                 best, x, y = apart, cx, cy
+                if body.radius_m - best >= AIM_M:
+                    return body.radius_m - best, x, y
     return body.radius_m - best, x, y
 
 
@@ -350,22 +358,26 @@ def _bend_from(
     x: float,
     y: float,
     aim: float,
-) -> tuple[bool, float, float]:
-    """Whether a body gets from one end to the other by the point that (x, y) is pushed to."""
+) -> tuple[int, float, float]:
+    """Whether a body gets from one end to the other by the point that (x, y) is pushed to.
+
+    BLOCKED means that it fits nowhere near that point, BARRED that it gets there from one end at
+    most.
+    """
     lowest, highest = heights
     ax, ay, bx, by = ends
     px, py, room = pushed(near, body, cells[0], highest, x, y, aim)
     if room < body.radius_m - EXACT_M:
-        return False, px, py
+        return BLOCKED, px, py
     if np.hypot(px - 0.5 * (ax + bx), py - 0.5 * (ay + by)) > arrays.cell_m:
-        return False, px, py
+        return BARRED, px, py
     for cell in cells:
         if not (
             is_way_clear(near, body, cell, lowest, highest, ax, ay, px, py)
             and is_way_clear(near, body, cell, lowest, highest, px, py, bx, by)
         ):
-            return False, px, py
-    return True, px, py
+            return BARRED, px, py
+    return CLEAR, px, py
 
 
 @inlined

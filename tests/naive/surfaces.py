@@ -51,18 +51,26 @@ def columns_of_triangles(triangles, raster) -> dict[tuple[int, int], Column]:
 
 
 def _with_gaps(cell, column: Column, found, hits) -> Column:
-    """A column and what lies over gaps in it between level neighbours on either side."""
+    """A column and what lies over gaps and sides of steps in it, between neighbours either side."""
     j, i = cell
+    heights = [height for height, _ in hits]
     added: Column = []
-    for one, two in (((j, i - 1), (j, i + 1)), ((j - 1, i), (j + 1, i))):
+    for dj, di in ((0, 1), (1, 0), (1, 1), (1, -1)):
+        one, two = (j - dj, i - di), (j + dj, i + di)
         for a, b in itertools.product(found.get(one, ()), found.get(two, ())):
-            z = (a[0] + b[0]) / 2
-            ceiling = min([a[1], b[1], *(height for height, _ in hits if height > z)])
-            if (
-                abs(a[0] - b[0]) <= 0.1
-                and ceiling - z >= LOWEST_M
-                and all(abs(height - z) >= LOWEST_M for height, _ in [*hits, *added])
-            ):
+            low, high = sorted((a[0], b[0]))
+            if high - low <= 0.1:
+                z = top = high = (low + high) / 2
+                if dj * di or any(abs(height - z) < LOWEST_M for height in heights):
+                    continue
+            else:
+                side = [h for h in heights if low - 0.01 <= h <= high + 0.01]
+                if high - low > LINK_M + 0.01 or not side:
+                    continue
+                z, top = (low if side[-1] - low < high - side[-1] + 0.01 else high), high + 0.01
+            ceiling = min([a[1], b[1], *(height for height in heights if height > top)])
+            others = [floor for floor, _ in [*column, *added]]
+            if ceiling - high >= LOWEST_M and all(abs(floor - z) >= LOWEST_M for floor in others):
                 added.append((z, ceiling))
     floors = sorted([*column, *added])
     return [
