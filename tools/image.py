@@ -206,7 +206,15 @@ def run(building: Building, stage: Stage) -> None:
     signal = stage.settings.get("STOPSIGNAL", "SIGTERM").removeprefix("SIG")
     script = _RUN.format(health=health, tries=HEALTHY_S, signal=signal)
     command = ["bwrap", "--ro-bind", str(building.root), "/", "--dev", "/dev", "--proc", "/proc"]
-    command += ["--tmpfs", "/tmp", "--unshare-net", "--unshare-pid", "--die-with-parent"]  # noqa: S108
+    command += [
+        "--perms",
+        "1777",
+        "--tmpfs",
+        "/tmp",
+        "--unshare-net",
+        "--unshare-pid",
+        "--die-with-parent",
+    ]
     for volume in building.volumes:
         command += ["--bind", str(building.root / volume.lstrip("/")), volume]
     command.append("--clearenv")

@@ -83,7 +83,7 @@ def _forget_older(marker: Path) -> None:
 def folder() -> Path | None:
     """The folder for this very source, None where there is none; one is made if need be."""
     name = f"kernels-{_digest()}"
-    places = [base / "esplanade" / name for base in (_home_cache(), Path(tempfile.gettempdir()))]
+    places = [base / "esplanade" / name for base in _bases()]
     for place in places:
         try:
             place.mkdir(parents=True, exist_ok=True)
@@ -100,10 +100,13 @@ def folder() -> Path | None:
     return None
 
 
-def _home_cache() -> Path:
+def _bases() -> list[Path]:
+    bases = []
     with contextlib.suppress(RuntimeError):  # there is no home
-        return Path.home() / ".cache"
-    return Path(tempfile.gettempdir())
+        bases.append(Path.home() / ".cache")
+    with contextlib.suppress(OSError):  # no temporary files can be written
+        bases.append(Path(tempfile.gettempdir()))
+    return bases
 
 
 def _pickled(value: object) -> bytes:

@@ -156,6 +156,14 @@ def test_without_any_folder_it_is_compiled_anew(program: Program) -> None:
     assert any("no folder" in line for line in logged)
 
 
+def test_where_nothing_can_be_written_it_is_compiled_anew(program: Program) -> None:
+    (program.home / ".cache").write_text("in the way")
+    nowhere = "import tempfile\ndef none():\n    raise FileNotFoundError('no usable folder')\n"
+    result, hits, logged = program.run(f"{nowhere}tempfile.gettempdir = none\n{ASK}")
+    assert (result, hits) == (2.0, 0)
+    assert any("no folder" in line for line in logged)
+
+
 def test_two_that_start_at_once_with_an_empty_cache_both_work(program: Program) -> None:
     both = [program.start(), program.start()]
     assert [outcome(process)[0] for process in both] == [2.0, 2.0]
