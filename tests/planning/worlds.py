@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TypeVar
 
 import numba
 import numpy as np
@@ -35,6 +36,7 @@ RULES = RuleModel().row[0]
 """The rules as they are by default, for kernels."""
 SLICES = PlanModel().slices
 
+Case = TypeVar("Case")
 Line = tuple[tuple[float, float], tuple[float, float]]
 
 
@@ -45,6 +47,11 @@ slow_if_plain = pytest.mark.skipif(not COMPILED, reason="too slow where kernels 
 def scaled(compiled: int, plain: int) -> int:
     """The amount of something to test: less where kernels are not compiled."""
     return compiled if COMPILED else plain
+
+
+def of_all(cases: Sequence[Case]) -> Sequence[Case]:
+    """All cases of a test, or the first where kernels are not compiled."""
+    return cases[: scaled(len(cases), 1)]
 
 
 def holds(compiled: int, plain: int) -> settings:

@@ -11,10 +11,11 @@ from esplanade.planning.ground.floors import Floors
 from esplanade.planning.ground.meshes import barriers_of_triangles, surfaces_of_triangles
 from esplanade.planning.scene.doors import Doors
 from tests.planning.ground.test_turned_meshes import block, plate, turned
+from tests.planning.worlds import of_all
 
 LOW_M = 1.5
 FROM, TO = (-3.0, 0.4, 0.0), (3.0, -0.3, 0.0)
-TURNS = [(9.0, (0.11, 0.07)), (27.0, (0.2, 0.03)), (45.0, (0.06, 0.19))]
+TURNS = of_all([(9.0, (0.11, 0.07)), (27.0, (0.2, 0.03)), (45.0, (0.06, 0.19))])
 
 Sheet = np.ndarray
 
