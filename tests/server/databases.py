@@ -110,7 +110,6 @@ def _owner() -> pwd.struct_passwd | None:
 
 
 def _call(owner: pwd.struct_passwd | None, *words: object) -> None:
-    as_owner = {} if owner is None else {"user": owner.pw_uid, "group": owner.pw_gid}
     environment = {**os.environ, "LC_ALL": "C", "HOME": "/tmp"}
     done = subprocess.run(
         [str(word) for word in words],
@@ -120,7 +119,8 @@ def _call(owner: pwd.struct_passwd | None, *words: object) -> None:
         stderr=subprocess.DEVNULL,
         env=environment,
         cwd="/tmp",
+        user=None if owner is None else owner.pw_uid,
+        group=None if owner is None else owner.pw_gid,
         extra_groups=None if owner is None else [],
-        **as_owner,  # type: ignore[arg-type]
     )
     assert done.returncode == 0, f"{words[0]} ended with status {done.returncode}"
