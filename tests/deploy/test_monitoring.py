@@ -17,6 +17,7 @@ from tests.server.http import get
 __all__ = ["room_file", "serving", "serving_assets"]
 
 DEPLOY: Final = Path(__file__).resolve().parents[2] / "deploy"
+SERVER: Final = DEPLOY.parent / "server"
 BOARD: Final = DEPLOY / "grafana" / "esplanade.json"
 RULES: Final = DEPLOY / "prometheus" / "esplanade.rules.yml"
 PROMTOOL: Final = shutil.which("promtool")
@@ -62,6 +63,18 @@ async def test_every_figure_that_is_named_is_one_of_a_real_server(serving: Servi
         assert all(name.endswith(("_total", "_bucket")) for name in rated), who
 
 
+def test_alerts_of_a_cluster_name_figures_that_hosts_and_gateways_have() -> None:
+    """They are told by several processes; each is named where it is made."""
+    rules = yaml.safe_load((DEPLOY / "prometheus" / "esplanade-cluster.rules.yml").read_text())
+    text = " ".join(rule["expr"] for group in rules["groups"] for rule in group["rules"])
+    folders = (SERVER / name for name in ("host", "gateway", "link", "clustering"))
+    sources = [path.read_text() for folder in folders for path in folder.glob("*.py")]
+    told = {name for source in sources for name in re.findall(r'"([a-z_]+)",', source)}
+    named = set(re.findall(r"\besplanade_(\w+)", text))
+    assert len(named) >= 6
+    assert {name for name in named if name.removesuffix("_total") not in told} == set()
+
+
 def test_panels_of_the_board_lie_beside_each_other() -> None:
     board = json.loads(BOARD.read_text(encoding="utf-8"))
     cells: set[tuple[int, int]] = set()
@@ -86,8 +99,10 @@ def test_panels_of_the_board_lie_beside_each_other() -> None:
         ["check", "rules", "esplanade.rules.yml"],
         ["check", "config", "prometheus.yml"],
         ["test", "rules", "esplanade.rules.test.yml"],
+        ["check", "config", "prometheus-cluster.yml"],
+        ["test", "rules", "esplanade-cluster.rules.test.yml"],
     ],
-    ids=["rules", "config", "tests"],
+    ids=["rules", "config", "tests", "config of a cluster", "tests of a cluster"],
 )
 def test_prometheus_takes_what_is_shipped(call: list[str]) -> None:
     done = subprocess.run(
