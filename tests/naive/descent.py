@@ -9,6 +9,8 @@ from esplanade.planning.grid._side_kernels import is_cut_off
 from esplanade.planning.routes.wave_front import WaveFront
 
 Place = tuple[float, float, float]
+PIECE_M = 0.07
+"""Steps are walked in pieces that are no longer."""
 
 
 def descend(
@@ -47,6 +49,8 @@ def descend(
         elif direction @ heading < turn_cos:
             corners.append((float(here[0]), float(here[1]), height))
             heading = direction
-        moved, heights = grid.walk([here], [height], [step_m * direction], clearance_m)
-        here, height = moved[0], float(heights[0])
+        pieces = math.ceil(step_m / PIECE_M)
+        for _ in range(pieces):
+            moved, heights = grid.walk([here], [height], [step_m / pieces * direction], clearance_m)
+            here, height = moved[0], float(heights[0])
     return None
