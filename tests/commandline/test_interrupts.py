@@ -61,7 +61,7 @@ def hear_interrupts() -> None:
         ("numba", "evaluate pyproject.toml"),
         ("rich.progress", "gait plots"),
         ("msgpack", "bots"),
-        ("structlog", "demo --port 47811 --private-port 47812"),
+        ("structlog", "demo --port 21811 --private-port 21812"),
     ],
 )
 def test_while_a_module_is_imported(module: str, words: str) -> None:
