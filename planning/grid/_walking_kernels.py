@@ -107,6 +107,7 @@ def walk(
         nx, ny = slide(index, placement, bounds, x, y, dx, dy, clearance)
         return follow(grid, cell, nx, ny), nx, ny
     way_m = np.hypot(dx, dy)
+    ux, uy = (dx / way_m, dy / way_m) if way_m > 0.0 else (0.0, 0.0)
     part = 1.0 / max(1, int(np.ceil(way_m / (0.8 * grid.layered.cell_m))))
     done = 0.0
     while done < 1.0 - 1e-9:
@@ -118,7 +119,7 @@ def walk(
             floor = min(floor, float(grid.layered.floors[ahead]))
         placement = Placement(floor, support, height_m, step_on_m, leg_length_m)
         nx, ny = slide(index, placement, bounds, x, y, part * dx, part * dy, clearance)
-        other = _cell_ahead(grid, cell, nx, ny, dx / way_m, dy / way_m, step_on_m)
+        other = _cell_ahead(grid, cell, nx, ny, ux, uy, step_on_m)
         if not _may_step(grid, cell, other, step_on_m):
             if part * way_m > _SHORTEST_M:
                 part *= 0.5  # two treads at once are too high, one after the other they are not
