@@ -125,7 +125,7 @@ class PotentialPool:
         wanted = [key for key in dict.fromkeys(goals) if key not in self._slots]
         for *_, body in wanted:
             self._grid.row_of(body)  # derived here, since the threads share the grid
-        # Where rows have to be copied when one more is needed, that takes seconds on large ground.
+        # Copying rows when one more is needed takes seconds on large ground.
         fresh = min(len(wanted), max(0, _IDLE_KEPT + 1 - len(self._idle)))
         self._reserve(len(self._keys) + fresh)
         with ThreadPoolExecutor(threads, thread_name_prefix="potentials") as pool:

@@ -1,4 +1,4 @@
-"""What a second of a simulated world costs, by the measured constants."""
+"""The costs of a second of a simulated world, by the measured constants."""
 
 from typing import NamedTuple
 

@@ -21,7 +21,7 @@ DAY_S: Final = 86_400.0
 
 @dataclass(frozen=True)
 class Plan:
-    """What is simulated."""
+    """The settings of a simulation."""
 
     zones: int
     people: int

@@ -1,4 +1,4 @@
-"""What a world of a thousand zones and a million people takes: a simulation by measured constants.
+"""The costs of a thousand zones and a million people: a simulation by measured constants.
 
     python -m benchmarks.scale_model                         1000 zones, 1000 people in each
     python -m benchmarks.scale_model --zones 3 --people 100 --seconds 120

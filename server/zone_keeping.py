@@ -1,4 +1,4 @@
-"""What is kept of one zone of a world: its rows of the store, and its chain of the audit."""
+"""The store and the audit as one zone of a world uses them."""
 
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager

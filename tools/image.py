@@ -33,7 +33,7 @@ _INHERITED: Final = re.compile(
     re.IGNORECASE,
 )
 _OF_MACHINE: Final = ("/etc/resolv.conf", "/etc/ssl/certs", "/etc/pip.conf")
-"""What steps see of this machine, so that they can reach what they install."""
+"""Files of this machine that steps see, so that they can reach what they install."""
 _PATH: Final = "/usr/local/bin:/usr/local/sbin:/usr/bin:/usr/sbin:/bin:/sbin"
 _RUN: Final = """
 "$@" &
@@ -188,7 +188,7 @@ def in_image(path: str) -> bool:
 
 
 def as_user(root: Path, user: str) -> list[str]:
-    """What runs a command as a user of a root folder."""
+    """The words before a command that run it as a user of a root folder."""
     if user == "root":
         return []
     (line,) = [

@@ -44,7 +44,7 @@ def main(words: Sequence[str] | None = None) -> int:
     except (OSError, WorldError) as error:
         sys.stderr.write(f"make cluster: {error}\n")
         return 2
-    # Whoever ends this ends what it has begun.
+    # The end of this process is that of all that it has begun.
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
         return run(options, zones)

@@ -29,7 +29,7 @@ def main() -> int:
     parser.add_argument("--seconds", type=float, default=120.0, help="of faults [120]")
     parser.add_argument("--bots", type=int, default=20, help="bots that live in it [20]")
     options = parser.parse_args()
-    # Whoever ends this ends what it has begun.
+    # The end of this process is that of all that it has begun.
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     with (
         tempfile.TemporaryDirectory(prefix="esplanade-chaos-") as folder,

@@ -9,7 +9,7 @@ from esplanade.protocol.messages import Entity, Welcome
 
 @dataclass
 class Account:
-    """What one bot has been told; it lives on when its connection ends."""
+    """All that one bot has been told; it lives on when its connection ends."""
 
     name: str
     person: int | None = None
@@ -20,7 +20,7 @@ class Account:
     seen: dict[int, Entity] = field(default_factory=dict)
     """Whom it has in view."""
     heard: Counter[str] = field(default_factory=Counter)
-    """How often it has heard each line."""
+    """The number of times that it has heard each line."""
     welcomes: int = 0
     snapshot_s: float | None = None
     """When it last got a snapshot; None while it has no connection."""

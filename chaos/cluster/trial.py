@@ -24,11 +24,11 @@ BEGIN_S: Final = 60.0
 
 @dataclass
 class Outcome:
-    """What came of a trial."""
+    """The outcome of a trial."""
 
     seed: int
     faults: list[str] = field(default_factory=list)
-    """What cannot be: doubles, ghosts, losses; a sentence each."""
+    """Things that cannot be: doubles, ghosts, losses; a sentence each."""
     gaps_s: dict[str, list[float]] = field(default_factory=dict)
     """The longest time without a snapshot of any bot around each fault, by its kind."""
     counts: dict[str, int] = field(default_factory=dict)

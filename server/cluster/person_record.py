@@ -23,7 +23,8 @@ class PersonRecord(BaseModel):
     address: str = ""
     """The key by which limits of the client's address go."""
     place: tuple[Metres, Metres, Metres] | None = None
-    """Where the avatar is to come into being, x, y and height, metres; None for any spawn."""
+    """The place at which the avatar is to come into being, x, y and height, metres; None for any
+    spawn."""
     anywhere: bool = False
     """Whether that very place is meant; otherwise the spawn that is nearest to it is."""
     operator: bool = False

@@ -24,7 +24,7 @@ class ClusterProcess:
     name: str
     kind: str
     address: str
-    """Where people reach a gateway; empty for a host."""
+    """The address at which people reach a gateway; empty for a host."""
     ago_us: int
     """For how long it has not said that it is there."""
     people: int

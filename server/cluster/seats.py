@@ -20,7 +20,7 @@ from esplanade.server.cluster.tenure import Claim
 from esplanade.server.store.tables import CLUSTER_SEATS
 
 NAMES_TOGETHER: Final = 64
-"""So many names are looked up at once."""
+"""The number of names that are looked up at once."""
 _TOKEN_BYTES: Final = 24
 
 
@@ -221,7 +221,7 @@ def seats_of(connection: Connection, persons: Collection[int]) -> list[ClusterSe
 
 
 def people_by_zone(connection: Connection) -> dict[str, int]:
-    """How many seats each zone has that has any."""
+    """The number of seats of each zone that has any."""
     zone = CLUSTER_SEATS.c.zone
     rows = connection.execute(select(zone, func.count()).group_by(zone))
     return {row[0]: int(row[1]) for row in rows}

@@ -1,4 +1,4 @@
-"""What the owner of a zone keeps in the database: what newcomers are told, and checkpoints."""
+"""The rows that the owner of a zone keeps: its description for newcomers, and checkpoints."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field

@@ -41,7 +41,7 @@ class Status:
 
     @property
     def disagreements(self) -> list[str]:
-        """What does not fit together, each a sentence."""
+        """All that does not fit together, each a sentence."""
         there = {each.name for each in self.processes if each.is_there}
         found = []
         for zone in self.zones:

@@ -24,7 +24,7 @@ def _no_link(host: str) -> str:
 
 
 class Operated(NamedTuple):
-    """What operators do with a zone, and see of it."""
+    """The console of a zone, and the live views of it."""
 
     console: Console
     live: Live

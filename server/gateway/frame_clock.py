@@ -4,7 +4,7 @@ from collections import deque
 from typing import Final
 
 KEPT: Final = 100
-"""So many frames are compared: the quickest of them is the one that tells the time best."""
+"""The number of frames that are compared: the quickest of them tells the time best."""
 
 
 class FrameClock:

@@ -28,7 +28,7 @@ from esplanade.server.settings import ServerSettings
 from esplanade.server.store.store import Store, StoreError
 
 BATCH_S: Final = 0.05
-"""What people want goes to the zones so often."""
+"""The time between two batches of wishes of people."""
 LOOK_S: Final = 0.1
 """So often the seats of those are read whom no zone shows."""
 FAREWELLS: Final = 5
@@ -84,7 +84,7 @@ class Reception:
 
     @property
     def hindrance(self) -> str | None:
-        """Why nobody should be sent here; None if people may come in."""
+        """The reason for which nobody should be sent here; None if people may come in."""
         return "stopping" if self._closing else None
 
     # --- requests of sessions that are in no zone ----------------------------------------------

@@ -99,7 +99,7 @@ class Host:
 
     @property
     def hindrance(self) -> str | None:
-        """Why this host can run no zone; None if it can."""
+        """The reason for which this host can run no zone; None if it can."""
         return None if self._ready else "starting"
 
     async def run(self) -> None:
@@ -242,7 +242,7 @@ def _write_files(folder: Path, connection: Any) -> Path:
 def _claim(host: str, zones: list[str], connection: Any) -> Claim | None:
     claimed = ownership.claim(connection, host, zones)
     if claimed is not None:
-        # Whoever was to have it has it: from now on any host may follow.
+        # The host that was to have it has it: from now on any host may follow.
         ownership.want(connection, claimed.zone, None)
     return claimed
 

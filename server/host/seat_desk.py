@@ -25,7 +25,7 @@ PAUSE_S: Final = 0.03
 RETRY_S: Final = 0.3
 
 Change = tuple[str, int, str]
-"""What is to be done with a seat, the generation that it is of, and a gateway."""
+"""The next step with a seat, the generation that it is of, and a gateway."""
 
 VACATE: Final = "vacate"
 REOCCUPY: Final = "reoccupy"

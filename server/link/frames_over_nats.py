@@ -108,8 +108,8 @@ class FrameReceiver:
         self.refused: Counter[str] = Counter()
         """Frames that were not applied, by why: `stale`, `bad`."""
         self.resyncs: Counter[str] = Counter()
-        """How often the whole state was asked for, by why: `start`, `gap`, `epoch`, `slow`,
-        `bad`."""
+        """The number of times that the whole state was asked for, by why: `start`, `gap`, `epoch`,
+        `slow`, `bad`."""
 
     async def start(self) -> None:
         """Take in frames from now on, and ask for the whole state."""

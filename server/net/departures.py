@@ -13,7 +13,7 @@ Go = Callable[[Session, str], bool]
 """Lets a person go through the portal of that name; whether there is a way now."""
 
 Steering = TypeVar("Steering")
-"""Whoever steers an avatar: a session, or the client of a gateway."""
+"""The one who steers an avatar: a session, or the client of a gateway."""
 
 
 class Departures(Generic[Steering]):

@@ -9,8 +9,9 @@ from typing import Final
 
 MANY: Final = 64
 """After so many comings what has come is kept out of the search."""
-LEAST_GONE: Final = 512
-"""After so many goings, and no fewer than there are people, all is looked through once."""
+LEAST_GONE: Final = 64
+"""After so many goings, and no fewer than a quarter of those who are there, all is looked through
+once: what a connection leaves refers to itself. So no more memory waits than they take."""
 
 
 class LongLived:
@@ -24,7 +25,7 @@ class LongLived:
         """Note how many came and went in a tick, and how many people are there."""
         self._came += came
         self._gone += gone
-        if self._gone >= max(LEAST_GONE, people):
+        if self._gone >= max(LEAST_GONE, people // 4):
             gc.unfreeze()
             gc.collect()
             self._gone, self._came = 0, MANY

@@ -59,7 +59,7 @@ class ActorTravel:
         """Actors who have come from other zones."""
         self._lately = Lately()
         self.before = Lately()
-        """What the checkpoint knows that the world goes on from."""
+        """The comings and goings in the checkpoint that the world goes on from."""
 
     def open(
         self, portals: Iterable[Portal], exits: Mapping[str, tuple["ActorTravel", Point]]
@@ -106,7 +106,7 @@ class ActorTravel:
     # --- restarts -----------------------------------------------------------------------------
 
     def save(self) -> dict[str, Any]:
-        """Who is on the way, and has come or gone lately, as plain data."""
+        """The actors on the way, and those who have come or gone lately, as plain data."""
         self._lately.forget(self._world.tick - round(REMEMBERED_S / self._world.tick_s))
         return {"under_way": sorted(self._under_way), **self._lately.save()}
 

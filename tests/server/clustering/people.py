@@ -1,4 +1,4 @@
-"""What people in a cluster do in tests, and what they see of each other."""
+"""People in a cluster for tests, and what they see of each other."""
 
 import asyncio
 import math

@@ -1,4 +1,4 @@
-"""What people want waits for a batch, and a movement goes out until it is acknowledged."""
+"""Wishes of people wait for a batch, and a movement goes out until it is acknowledged."""
 
 from typing import Any, cast
 

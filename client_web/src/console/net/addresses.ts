@@ -5,7 +5,7 @@ export interface Addresses {
   live: string;
 }
 
-/** What is before the page, and the zone that it is about if it names one. */
+/** The path before the page, and the zone that it is about if it names one. */
 const PAGE = /^(?<root>.*?)(?:\/zones\/(?<zone>[^/]+))?\/console(?:\.html|\/.*)?$/;
 
 /** The page about another zone; a proxy may serve all of it below a path. */
