@@ -21,6 +21,7 @@ from esplanade.commandline.recording_settings import READING
 from esplanade.commandline.settings import given_settings
 from esplanade.server.options import SETTINGS
 from tests.patience import COMPILING_PATIENCE_S, PATIENCE_S
+from tests.ports import free_ports
 from tests.server.certificates import make_pair
 
 
@@ -29,14 +30,6 @@ def wait_for(condition: Callable[[], bool], limit_s: float, what: str) -> None:
     while not condition():
         assert time.monotonic() < deadline_s, f"waited {limit_s:g} s for {what}"
         time.sleep(0.1)
-
-
-def free_ports(count: int) -> list[int]:
-    sockets = [socket.create_server(("127.0.0.1", 0)) for _ in range(count)]
-    ports = [one.getsockname()[1] for one in sockets]
-    for one in sockets:
-        one.close()
-    return ports
 
 
 def metrics(private_port: int) -> str:
@@ -87,7 +80,12 @@ def test_visitors_come_and_one_signal_ends_everything(
     running_demo: tuple[subprocess.Popen[str], str, int],
 ) -> None:
     process, address, private_port = running_demo
-    wait_for(lambda: demo.is_ready(private_port), COMPILING_PATIENCE_S, "the world to be ready")
+
+    def is_ready() -> bool:
+        assert process.poll() is None, process.communicate()[0]
+        return demo.is_ready(private_port)
+
+    wait_for(is_ready, COMPILING_PATIENCE_S, "the world to be ready")
     wait_for(lambda: "esplanade_clients 3.0" in metrics(private_port), PATIENCE_S, "three visitors")
     (visitors,) = children(process.pid)
 

@@ -13,6 +13,7 @@ from typing import Final
 import pytest
 
 from tests.patience import PATIENCE_S
+from tests.ports import free_ports
 
 REQUIRE_VARIABLE: Final = "ESPLANADE_REQUIRE_NATS"
 """With 1, a test that finds no NATS server fails instead of skipping."""
@@ -24,9 +25,7 @@ class NatsServer:
     def __init__(self, program: str) -> None:
         self._program = program
         self._process: subprocess.Popen[bytes] | None = None
-        with socket.socket() as free:
-            free.bind(("127.0.0.1", 0))
-            self._port = free.getsockname()[1]
+        (self._port,) = free_ports(1)
 
     @property
     def address(self) -> str:

@@ -10,8 +10,8 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from tests.esplanade.test_demo import free_ports
 from tests.patience import COMPILING_PATIENCE_S
+from tests.ports import free_ports
 
 PAGE = Path(__file__).resolve().parents[3] / "docs" / "operators.md"
 
