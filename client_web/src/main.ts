@@ -3,17 +3,25 @@
 import { readAddress } from "./app/address";
 import { offerInspection } from "./app/inspection";
 import { Session } from "./app/session";
+import { MapView } from "./app/mapview";
+import type { Picture } from "./app/picture";
 import { View } from "./app/view";
 import { listenToPointer } from "./input/pointer";
 import { socketAddress } from "./net/address";
 import { Seats } from "./net/seats";
 import { browserLocks, channelLocks } from "./net/tablocks";
+import { drawsDepth } from "./render/hardware";
 import { byId } from "./ui/dom";
 import { setUpHelp, storedChoice } from "./ui/help";
 
 const picture = byId("picture", HTMLCanvasElement);
 const calm = window.matchMedia("(prefers-reduced-motion: reduce)").matches;
-const view = new View(picture, byId("labels", HTMLElement), storedChoice(), calm);
+const isFlat = !drawsDepth();
+const view: Picture = isFlat
+  ? new MapView(picture)
+  : new View(picture, byId("labels", HTMLElement), storedChoice(), calm);
+document.body.classList.toggle("flat", isFlat);
+byId("join-picture", HTMLElement).hidden = !isFlat;
 
 const locks =
   browserLocks(navigator.locks) ??
@@ -22,7 +30,7 @@ const locks =
     crypto.getRandomValues(new Uint32Array(3)).join("-"),
   );
 const seats = new Seats(sessionStorage, localStorage, locks, Date.now);
-const { operator, admission, at, rest } = readAddress(location.hash);
+const { operator, admission, at, lookYaw, rest } = readAddress(location.hash);
 // Secrets are kept in memory alone: not where others read over a shoulder, nor in the history.
 if (operator !== null || admission !== null) {
   history.replaceState(history.state, "", location.pathname + location.search + rest);
@@ -31,6 +39,7 @@ const session = new Session(view, seats, socketAddress(document.baseURI), {
   operator,
   admission,
   at,
+  lookYaw,
 });
 
 listenToPointer(picture, {
@@ -61,6 +70,9 @@ const hurry = (): void => {
   session.connection.hurry();
 };
 window.addEventListener("online", hurry);
+window.addEventListener("offline", () => {
+  session.connection.doubt();
+});
 document.addEventListener("visibilitychange", hurry);
 window.addEventListener("pagehide", () => {
   seats.touch();

@@ -3,7 +3,7 @@
 import base64
 from collections.abc import Iterator
 from itertools import combinations
-from typing import Any
+from typing import Any, Final
 
 import pytest
 from playwright.async_api import Browser
@@ -19,8 +19,15 @@ CONTROLS = (
     "#status, #top button, #minimap, #storeys button, "
     "#chat-toggle, #stick, #chat-line, #chat-form button"
 )
-PANELS = "#people, #plan"
+PANELS = "#people, #plan, #person, #told"
 THUMB_PX = 44.0
+MOUSE_PX = 38.0
+
+DESKS: Final = [(1280, 720), (1366, 768), (1920, 1080), (2560, 1440)]
+ZOOMS: Final = [1.0, 1.5, 2.0, 3.0]
+PHONES: Final = [(320, 568), (568, 320), (390, 844), (844, 390), (768, 1024), (1024, 768)]
+WINDOWS: Final = sorted({(round(w / z), round(h / z)) for w, h in DESKS for z in ZOOMS})
+"""A page that is zoomed has a window with fewer pixels of the page."""
 MOST_OF_ONE_COLOUR = 0.4
 LEAST_COLOURS = 700
 """Of 32 768 that are told apart. Without the picture the page has fewer than 500."""
@@ -28,6 +35,24 @@ LEAST_COLOURS = 700
 _BOXES = """(selector) => [...document.querySelectorAll(selector)]
   .map((e) => ({ name: e.id || e.textContent, box: e.getBoundingClientRect().toJSON() }))
   .filter(({ box }) => box.width > 0)"""
+
+# What a person may have opened; the list of people has its first row only while they are in view.
+OPENINGS: Final = {
+    "people": "() => document.querySelector('#people-open').click()",
+    "plan": "() => document.querySelector('#plan-open').click()",
+    "chat": """() => { const toggle = document.querySelector('#chat-toggle');
+      if (toggle.checkVisibility()) toggle.click(); }""",
+    "told": """() => { for (const id of ['banner', 'pace', 'invitation']) {
+      const told = document.getElementById(id);
+      if (id !== 'invitation') told.textContent = 'The connection was lost. Coming back by itself…';
+      told.hidden = false; } }""",
+    "person": "() => { document.querySelector('#person').hidden = false; }",
+}
+CLOSED: Final = """() => {
+  for (const opener of document.querySelectorAll('[aria-expanded="true"]')) opener.click();
+  for (const id of ['banner', 'pace', 'invitation', 'person'])
+    document.getElementById(id).hidden = true;
+}"""
 
 _COLOURS = """async (picture) => {
   const image = new Image();
@@ -80,36 +105,48 @@ def overlapping(boxes: list[dict[str, Any]]) -> Iterator[str]:
             yield f"{a['name']} and {b['name']}"
 
 
-@SIZES
-async def test_controls_lie_apart_and_within_the_window(
-    browser: Browser, url: str, width: int, height: int
+@pytest.mark.parametrize(
+    ("sizes", "touch"), [(WINDOWS, False), (PHONES, True)], ids=["mouse", "touch"]
+)
+async def test_no_control_covers_another_whatever_the_window(
+    browser: Browser, url: str, sizes: list[tuple[int, int]], touch: bool
 ) -> None:
-    visitor = await visit(browser, url, width, height)
-    boxes = await boxes_of(visitor, CONTROLS)
-    assert len(boxes) >= 6
-    assert list(overlapping(boxes)) == []
-    outside = [
-        each["name"]
-        for each in boxes
-        if each["box"]["left"] < 0
-        or each["box"]["top"] < 0
-        or each["box"]["right"] > width
-        or each["box"]["bottom"] > height
-    ]
-    assert outside == []
-    await visitor.page.context.close()
+    """With each panel open, with the chat open, and with something told."""
+    width, height = sizes[-1]
+    context = await browser.new_context(
+        viewport={"width": width, "height": height}, has_touch=touch, is_mobile=touch
+    )
+    visitor = await Visitor.arrive(context, url)
+    await visitor.join("Ann")
+    faults = []
+    for width, height in sizes:
+        await visitor.page.set_viewport_size({"width": width, "height": height})
+        for state in ("", *OPENINGS):
+            if state:
+                await visitor.page.evaluate(OPENINGS[state])
+            faults += [
+                f"{width}x{height} {state}: {fault}"
+                for fault in await faults_of(visitor, width, height, touch=touch)
+            ]
+            if state:
+                await visitor.page.evaluate(CLOSED)
+    assert faults == []
+    await context.close()
 
 
-@SIZES
-async def test_open_panels_cover_no_control(
-    browser: Browser, url: str, width: int, height: int
-) -> None:
-    visitor = await visit(browser, url, width, height)
-    for opener in ("#people-open", "#plan-open"):
-        await visitor.page.click(opener)
-        boxes = await boxes_of(visitor, f"{CONTROLS}, {PANELS}")
-        assert list(overlapping(boxes)) == [], opener
-    await visitor.page.context.close()
+async def faults_of(visitor: Visitor, width: int, height: int, *, touch: bool) -> list[str]:
+    """Whatever covers something else, lies outside of the window, or is too small to be hit."""
+    boxes = await boxes_of(visitor, f"{CONTROLS}, {PANELS}")
+    assert len(boxes) >= 4
+    faults = list(overlapping(boxes))
+    for each in boxes:
+        box = each["box"]
+        if min(box["left"], box["top"]) < 0 or box["right"] > width or box["bottom"] > height:
+            faults.append(f"{each['name']} is outside")
+    least_px = THUMB_PX if touch else MOUSE_PX
+    buttons = await boxes_of(visitor, "#top button, #chat-toggle, #chat-form button")
+    faults += [f"{b['name']} is low" for b in buttons if b["box"]["height"] < least_px]
+    return faults
 
 
 async def test_thumbs_have_room_on_a_phone(browser: Browser, url: str) -> None:

@@ -14,6 +14,7 @@ from tests.patience import PATIENCE_S
 View = dict[str, Any]
 """Everything that a page knows, as `window.esplanade` tells it."""
 
+NORTHWARD: Final = "#look=90"
 _POLL_S: Final = 0.1
 
 # The page's security policy forbids evaluating strings, so conditions are polled from here.
@@ -38,7 +39,10 @@ class Visitor:
 
     @classmethod
     async def arrive(cls, context: BrowserContext, url: str, drawing: str = "fast") -> "Visitor":
-        """Open the client in a new page, that draws as finely as is said."""
+        """Open the client in a new page, that draws as finely as is said.
+
+        The first view goes to the north, unless the address says something of its own.
+        """
         context.set_default_timeout(1e3 * PATIENCE_S)
         page = await context.new_page()
         visitor = cls(page)
@@ -52,7 +56,7 @@ class Visitor:
         page.on("request", requested)
         await page.add_init_script(_COLLECT_VIOLATIONS)
         await page.add_init_script(f"localStorage.setItem('esplanade.drawing', '{drawing}');")
-        await page.goto(url)
+        await page.goto(url if "#" in url else url + NORTHWARD)
         return visitor
 
     async def join(self, name: str) -> None:

@@ -8,6 +8,8 @@ export interface AddressWish {
   operator: string | null;
   /** A place to look at and to be asked to walk to. */
   at: Place | null;
+  /** The direction of the first view, radians from +x; null for where people are seen. */
+  lookYaw: number | null;
   /** The operator's pass or the invitation that lets this person in. */
   admission: Admission | null;
   /** The part that may stay in the address: everything that is not secret. */
@@ -16,7 +18,7 @@ export interface AddressWish {
 
 const SECRETS = ["operator=", "pass=", "invitation="];
 
-/** Read `#operator=KEY&at=x,y,z`, with `pass=` or `invitation=`; z may be left out. */
+/** Read `#operator=KEY&at=x,y,z&look=90`, with `pass=` or `invitation=`; z may be left out. */
 export function readAddress(hash: string): AddressWish {
   const parts = hash.replace(/^#/, "").split("&");
   const rest = parts.filter(
@@ -27,6 +29,7 @@ export function readAddress(hash: string): AddressWish {
     operator: wishes.get("operator"),
     admission: readAdmission(wishes),
     at: readPlace(wishes.get("at")),
+    lookYaw: readDirection(wishes.get("look")),
     rest: rest.length > 0 ? `#${rest.join("&")}` : "",
   };
 }
@@ -44,4 +47,10 @@ function readPlace(text: string | null): Place | null {
   const [x = NaN, y = NaN, z = 0] = numbers;
   const fits = numbers.length <= 3 && [x, y, z].every((metres) => Math.abs(metres) <= 100_000);
   return fits ? { x, y, z } : null;
+}
+
+/** A direction in degrees, 0 to the east and 90 to the north. */
+function readDirection(text: string | null): number | null {
+  const degrees = text === null || text.trim() === "" ? NaN : Number(text);
+  return Math.abs(degrees) <= 360 ? (degrees * Math.PI) / 180 : null;
 }

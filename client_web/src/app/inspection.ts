@@ -5,7 +5,7 @@ import type { Doors, Plan } from "../net/messages";
 import type { Foot } from "../world/body";
 import type { Avatar } from "../world/world";
 import type { Session } from "./session";
-import type { View } from "./view";
+import type { Picture } from "./picture";
 
 export interface Inspection {
   readonly phase: ConnectionState["phase"];
@@ -14,6 +14,8 @@ export interface Inspection {
   readonly doors: Readonly<Doors> | null;
   readonly plan: Plan | null;
   readonly chosenId: number | null;
+  /** Direction in which the camera looks on the ground, radians from +x. */
+  readonly cameraYaw: number;
   /** Frames drawn since the page was loaded. */
   readonly frames: number;
   readonly qualityLevel: number;
@@ -51,7 +53,7 @@ declare global {
   }
 }
 
-export function offerInspection(session: Session, view: View): void {
+export function offerInspection(session: Session, view: Picture): void {
   window.esplanade = Object.freeze({
     get phase() {
       return session.connection.state.phase;
@@ -70,6 +72,9 @@ export function offerInspection(session: Session, view: View): void {
     },
     get chosenId() {
       return session.chosenId;
+    },
+    get cameraYaw() {
+      return view.camera.yaw;
     },
     get frames() {
       return session.frames;

@@ -24,7 +24,7 @@ import { World } from "../world/world";
 import type { AddressWish } from "./address";
 import { Cost } from "./cost";
 import { Mutes } from "./mutes";
-import type { View } from "./view";
+import type { Picture } from "./picture";
 import { Walking } from "./walking";
 
 const PANELS_MS = 200;
@@ -59,22 +59,27 @@ export class Session {
   private admission: Admission | null;
   /** Whether the welcome that comes next is that of another zone of the same world. */
   private travels = false;
+  /** Whether the camera was turned for this world; a connection that comes back turns nothing. */
+  private hasLooked = false;
   /** A place that a link names; null once the view was turned to it. */
   private linked: Place | null;
+  /** The direction of the first view that a link names; null once the view was turned. */
+  private lookYaw: number | null;
   /** The name that the person gave; the server may have added a number. */
   private wishedName = "";
   private frameMs = performance.now();
   private panelsMs = 0;
 
   constructor(
-    private readonly view: View,
+    private readonly view: Picture,
     private readonly seats: Seats,
     socketUrl: string,
-    wish: Pick<AddressWish, "operator" | "admission" | "at">,
+    wish: Pick<AddressWish, "operator" | "admission" | "at" | "lookYaw">,
   ) {
     this.operator = wish.operator;
     this.admission = wish.admission;
     this.linked = wish.at;
+    this.lookYaw = wish.lookYaw;
     this.connection = new Connection(() => new WebSocket(socketUrl), {
       state: (state) => {
         this.stateChanged(state);
@@ -111,9 +116,11 @@ export class Session {
     });
     this.people = new PeopleList(
       (id) => {
+        this.turnTo(id);
         this.choose(id);
       },
       (id, name) => {
+        this.turnTo(id);
         this.person.open(id, name);
       },
       (name) => this.mutes.has(name),
@@ -278,6 +285,7 @@ export class Session {
     this.walking.enter(this.world);
     this.minimap.show(welcome.scene);
     this.chosenId = null;
+    if (!welcome.resumed || this.travels) this.hasLooked = false;
     this.pace.hide();
     if (welcome.scene.mesh !== undefined) void this.build(this.world, welcome.scene.mesh);
   }
@@ -295,6 +303,14 @@ export class Session {
     }
   }
 
+  private lookFirst(world: World, here: Place): void {
+    this.hasLooked = true;
+    if (this.linked) this.followLink(here, this.linked);
+    else if (this.lookYaw === null) this.view.lookAround(world);
+    if (this.lookYaw !== null) this.view.camera.yaw = this.lookYaw;
+    this.lookYaw = null;
+  }
+
   /** Look to where a link leads, and ask whether to walk there. */
   private followLink(from: Place, to: Place): void {
     this.linked = null;
@@ -302,6 +318,12 @@ export class Session {
     new Invitation(() => {
       this.walking.walkTo(to);
     }).open();
+  }
+
+  /** Look at somebody who was chosen without being seen. */
+  private turnTo(id: number): void {
+    const avatar = this.world?.avatars.get(id);
+    if (avatar) this.view.camera.turnTo(avatar.pose);
   }
 
   private choose(id: number | null): void {
@@ -329,7 +351,7 @@ export class Session {
     this.frames++;
     const { world } = this;
     if (!world) return;
-    if (this.linked && world.own) this.followLink(world.own.pose, this.linked);
+    if (world.own && !this.hasLooked) this.lookFirst(world, world.own.pose);
     const steppedS = Math.min(frameS, LONGEST_FRAME_S);
     this.view.camera.orbit(this.walking.turnPerS * steppedS, 0);
     this.walking.frame(this.view.camera.yaw);
@@ -347,7 +369,7 @@ export class Session {
     const name = this.chosenId === null ? null : (world.avatars.get(this.chosenId)?.name ?? null);
     this.status.roundTrip(this.connection.clock.roundTripS);
     this.people.update(world.avatars, this.chosenId);
-    this.planPanel.update(name, world.plan);
+    this.planPanel.update(name, world.plan, world.avatars, world.scene);
     const { avatars, own, doors, plan } = world;
     this.minimap.update(avatars, own, doors, this.view.camera.yaw, plan);
   }

@@ -3,11 +3,12 @@
 import { Cutaway } from "../render/cutaway";
 import { FollowCamera } from "../render/follow";
 import { Figures } from "../render/figures";
+import { firstYaw } from "../render/firstview";
 import { drawsInSoftware } from "../render/hardware";
 import { SkeletonOverlay } from "../render/skeletonoverlay";
 import { Labels } from "../render/labels";
 import { Marks } from "../render/marks";
-import { Picking, type Place, type ScreenPoint } from "../render/picking";
+import { Picking, type ScreenPoint } from "../render/picking";
 import { Plans } from "../render/plans";
 import { type Choice, QualityControl } from "../render/quality";
 import { Renderer } from "../render/renderer";
@@ -16,11 +17,12 @@ import { STOREYS_APART_M } from "../world/heights";
 import type { Triangles } from "../world/mesh";
 import type { Avatar, World } from "../world/world";
 import { Cost } from "./cost";
+import type { Picked, Picture } from "./picture";
 
 /** The names of people on other storeys are drawn with this opacity. */
 const DIMMED = 0.45;
 
-export class View {
+export class View implements Picture {
   readonly camera: FollowCamera;
   readonly marks: Marks;
   readonly skeletons = new SkeletonOverlay();
@@ -60,11 +62,22 @@ export class View {
     }).observe(canvas);
   }
 
-  /** Show this world from now on. */
   enter(world: World, mesh: Triangles | null = null): void {
     this.town = buildTown(world, this.cutaway, mesh);
     this.renderer.show(this.town, world.scene);
     this.marks.walkTarget(null);
+  }
+
+  lookAround({ own, avatars }: World): void {
+    const { town } = this;
+    if (!own || !town) return;
+    const here = own.pose;
+    const others = [...avatars.values()]
+      .filter(({ own: isOwn, pose }) => !isOwn && Math.abs(pose.z - here.z) < STOREYS_APART_M)
+      .map(({ pose }) => pose);
+    this.camera.yaw = firstYaw(here, others, (yaw) =>
+      this.picking.freeM(here, yaw, town.occluders),
+    );
   }
 
   choose(choice: Choice): void {
@@ -76,11 +89,7 @@ export class View {
     this.labels.say(avatar, text);
   }
 
-  /** The thing at a point of the screen; doors are found only for those who may move them. */
-  pick(
-    at: ScreenPoint,
-    doors: boolean,
-  ): { avatar: Avatar } | { door: string } | { floor: Place } | null {
+  pick(at: ScreenPoint, doors: boolean): Picked {
     const { picking, town, cutaway } = this;
     if (!town) return null;
     const avatar = picking.avatar(at, this.drawn);

@@ -42,7 +42,9 @@ export interface Greeting {
 const OPEN = 1;
 const PULSE_MS = 1000;
 /** The connection is taken for dead after this long without a frame. */
-const SILENCE_MS = 8000;
+const SILENCE_MS = 5000;
+/** So it is after this long, once the device says that it has no network. */
+const DOUBTED_SILENCE_MS = 1500;
 const GREETING_MS = 10000;
 
 const nowS = (): number => performance.now() / 1000;
@@ -55,6 +57,7 @@ export class Connection {
   private attempt = 0;
   private stated: string | null = null;
   private heardMs = 0;
+  private doubted = false;
   private pingNonce = 0;
   private readonly pings = new Map<number, number>();
   private retryTimer: ReturnType<typeof setTimeout> | undefined;
@@ -89,9 +92,16 @@ export class Connection {
 
   /** Try at once instead of waiting, e.g. because the network came back. */
   hurry(): void {
+    this.doubted = false;
     if (this.state_.phase !== "reconnecting" || this.socket) return;
     clearTimeout(this.retryTimer);
     this.connect();
+  }
+
+  /** The device has no network: the connection has to show soon that it lives all the same. */
+  doubt(): void {
+    this.doubted = true;
+    this.ping();
   }
 
   /** False if the message could not be sent because the connection is not live. */
@@ -105,6 +115,7 @@ export class Connection {
     const socket = this.open();
     this.socket = socket;
     this.stated = null;
+    this.doubted = false;
     this.heardMs = performance.now();
     socket.binaryType = "arraybuffer";
     socket.onopen = () => {
@@ -161,7 +172,8 @@ export class Connection {
   private pulse(): void {
     const silentMs = performance.now() - this.heardMs;
     if (this.state_.phase === "live") {
-      if (silentMs > SILENCE_MS) this.lost({ text: "The server fell silent.", retry: true });
+      const longestMs = this.doubted ? DOUBTED_SILENCE_MS : SILENCE_MS;
+      if (silentMs > longestMs) this.lost({ text: "The server fell silent.", retry: true });
       else this.ping();
     } else if (silentMs > GREETING_MS) {
       this.lost({ text: "The server does not answer.", retry: true });

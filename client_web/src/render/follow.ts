@@ -14,12 +14,17 @@ const LOOK_FAR_M = 1.9;
 const FAR_M = 8;
 const FOLLOW_PER_S = 10;
 const OUT_PER_S = 3;
+const TURN_PER_S = 5;
+/** Nobody sees a turn by so many radians. */
+const TURNED = 0.01;
 /** Kept between the camera and the wall behind it. */
 const GAP_M = 0.3;
 
 export class FollowCamera {
   /** Direction in which the camera looks on the ground, radians from +x. */
   yaw = Math.PI / 2;
+  /** The direction to which the camera turns by itself; null while it does not. */
+  private wantedYaw: number | null = null;
   private pitch = 0.36;
   private distanceM = 9;
   private freeM = FARTHEST_M;
@@ -32,8 +37,14 @@ export class FollowCamera {
 
   /** Turn by angles in radians. */
   orbit(yaw: number, pitch: number): void {
+    if (yaw !== 0) this.wantedYaw = null;
     this.yaw += yaw;
     this.pitch = Math.max(LOWEST, Math.min(HIGHEST, this.pitch + pitch));
+  }
+
+  /** Turn, in a moment, until the camera looks over the own avatar at a point of the ground. */
+  turnTo({ x, y }: { x: number; y: number }): void {
+    this.wantedYaw = Math.atan2(y - this.aim.y, x - this.aim.x);
   }
 
   /** Come nearer (`factor` < 1) or go back. */
@@ -55,6 +66,7 @@ export class FollowCamera {
     const lookM = LOOK_NEAR_M + (LOOK_FAR_M - LOOK_NEAR_M) * far;
     this.aim.z += (z + lookM - this.aim.z) * part;
     this.placed = true;
+    this.turn(frameS);
     const flat = Math.cos(this.pitch);
     this.back.set(-Math.cos(this.yaw) * flat, -Math.sin(this.yaw) * flat, Math.sin(this.pitch));
     this.ray.set(this.aim, this.back);
@@ -79,5 +91,13 @@ export class FollowCamera {
     this.camera.position.copy(this.aim).addScaledVector(this.back, this.reachM);
     this.camera.lookAt(this.aim);
     return hidden;
+  }
+
+  private turn(frameS: number): void {
+    if (this.wantedYaw === null) return;
+    const left = this.wantedYaw - this.yaw;
+    const turn = Math.atan2(Math.sin(left), Math.cos(left));
+    this.yaw += turn * Math.min(1, TURN_PER_S * frameS);
+    if (Math.abs(turn) < TURNED) this.wantedYaw = null;
   }
 }

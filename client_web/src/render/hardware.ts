@@ -1,6 +1,13 @@
-/** Tells whether a graphics card draws the picture, or the processor in its place. */
+/** Tells what draws the picture: a graphics card, the processor in its place, or nothing. */
 
 const SOFTWARE = /swiftshader|llvmpipe|software|basic render/i;
+
+/** Whether the browser draws in three dimensions at all: it may be forbidden, or too old. */
+export function drawsDepth(): boolean {
+  const context = document.createElement("canvas").getContext("webgl2");
+  context?.getExtension("WEBGL_lose_context")?.loseContext();
+  return context !== null;
+}
 
 export function drawsInSoftware(): boolean {
   const context = document.createElement("canvas").getContext("webgl2");

@@ -1,6 +1,7 @@
 /** The colours of the world and of avatars' clothes. */
 
 import { Color } from "three";
+import { unlikeness } from "./likeness";
 
 export const SKY_TOP = new Color("#5d9bd3");
 export const SKY_LOW = new Color("#dbe9f2");
@@ -42,6 +43,9 @@ const HAIRDOS = ["short", "short", "short", "long", "long", "bun"] as const;
 const SHORT_SLEEVES = 0.45;
 const SHORT_TROUSERS = 0.15;
 
+/** Cloth that is less unlike the skin than this looks like skin. */
+const LIKE_SKIN = 0.1;
+
 export interface Clothing {
   shirt: Color;
   trousers: Color;
@@ -56,9 +60,9 @@ export interface Clothing {
 
 /** The clothes of an avatar, always the same for the same id. */
 export function clothingOf(id: number): Clothing {
-  const shirt = pick(SHIRTS, id, 1);
-  const trousers = pick(TROUSERS, id, 2);
   const skin = pick(SKINS, id, 3);
+  const shirt = pick(unlike(skin, SHIRTS), id, 1);
+  const trousers = pick(unlike(skin, TROUSERS), id, 2);
   return {
     shirt,
     trousers,
@@ -69,6 +73,11 @@ export function clothingOf(id: number): Clothing {
     shin: scatter(id, 9) < SHORT_TROUSERS ? skin : trousers,
     hairdo: HAIRDOS[Math.floor(scatter(id, 10) * HAIRDOS.length)] ?? "short",
   };
+}
+
+/** The colours of cloth that nobody takes for the skin. */
+function unlike(skin: Color, cloth: readonly string[]): string[] {
+  return cloth.filter((colour) => unlikeness(new Color(colour), skin) > LIKE_SKIN);
 }
 
 export function facadeOf(index: number): Color {

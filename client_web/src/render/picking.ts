@@ -31,6 +31,7 @@ interface Hit {
 /** A face that slopes more is no floor: 45 degrees. */
 const LEVEL = Math.SQRT1_2;
 const REACH_M = 60;
+const EYES_M = 1.6;
 /** One may click this far beside a figure, or on a wider body: metres plus a part of the screen's height. */
 const BESIDE_M = 0.3;
 const BESIDE_SCREEN = 0.015;
@@ -88,6 +89,13 @@ export class Picking {
     if (!point || point.distanceTo(this.camera.position) > 2 * REACH_M) return null;
     const { x, y } = point;
     return { x, y, z: hit && hit.slope < LEVEL ? hit.baseM : point.z };
+  }
+
+  /** How far one sees from a place, at the height of the eyes, in a direction on the ground. */
+  freeM({ x, y, z }: Place, yaw: number, occluders: readonly Mesh[]): number {
+    this.ray.set(this.foot.set(x, y, z + EYES_M), this.head.set(Math.cos(yaw), Math.sin(yaw), 0));
+    const [hit] = this.ray.intersectObjects<Mesh>([...occluders]);
+    return hit ? Math.min(hit.distance, REACH_M) : REACH_M;
   }
 
   private firstSeen(occluders: readonly Mesh[], cutaway: Cutaway): Hit | null {

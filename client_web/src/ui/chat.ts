@@ -3,6 +3,8 @@
 import { MAX_CHAT_CHARS } from "../net/codes";
 import type { ChatMessage } from "../net/messages";
 import { byId, element } from "./dom";
+import { withLinks } from "./links";
+import { tooLong } from "./lengths";
 import type { SaidLine } from "./person";
 
 const KEPT_LINES = 80;
@@ -12,15 +14,20 @@ const OFFERED_LINES = 5;
 export class ChatPanel {
   private readonly panel = byId("chat", HTMLElement);
   private readonly log = byId("chat-log", HTMLElement);
+  private readonly lines = byId("chat-lines", HTMLElement);
+  private readonly fault = byId("chat-fault", HTMLElement);
   private readonly form = byId("chat-form", HTMLFormElement);
   private readonly line = byId("chat-line", HTMLInputElement);
   private readonly toggle = byId("chat-toggle", HTMLButtonElement);
 
   constructor(say: (text: string) => boolean) {
-    this.line.maxLength = MAX_CHAT_CHARS;
+    this.line.addEventListener("input", () => {
+      this.complain();
+    });
     this.form.addEventListener("submit", (event) => {
       event.preventDefault();
       const text = this.line.value.trim();
+      if (this.complain()) return;
       if (text !== "" && !say(text)) {
         this.note("Not sent: there is no connection at the moment.");
         return;
@@ -36,8 +43,7 @@ export class ChatPanel {
       else this.enter();
     });
     window.addEventListener("keydown", (event) => {
-      if (event.key !== "Enter" || event.defaultPrevented) return;
-      if (document.activeElement && document.activeElement !== document.body) return;
+      if (event.key !== "Enter" || event.defaultPrevented || usesEnter(event.target)) return;
       event.preventDefault();
       this.enter();
     });
@@ -45,7 +51,7 @@ export class ChatPanel {
 
   said({ id, name, text, line }: ChatMessage, own: boolean): void {
     const who = element("b", own ? { class: "own" } : {}, name);
-    const words = element("span", {}, text);
+    const words = element("span", {}, ...withLinks(text));
     this.add(element("li", { "data-line": String(line), "data-id": String(id) }, who, " ", words));
     if (!this.panel.classList.contains("open")) this.toggle.classList.add("unread");
   }
@@ -85,9 +91,24 @@ export class ChatPanel {
     this.line.blur();
   }
 
+  /** Say that a line is too long to be sent; returns whether it is. */
+  private complain(): boolean {
+    const text = tooLong(this.line.value.trim(), MAX_CHAT_CHARS);
+    this.fault.hidden = text === null;
+    this.fault.textContent = text;
+    return text !== null;
+  }
+
   private add(item: HTMLElement): void {
-    this.log.append(item);
-    while (this.log.childElementCount > KEPT_LINES) this.log.firstElementChild?.remove();
+    this.lines.append(item);
+    while (this.lines.childElementCount > KEPT_LINES) this.lines.firstElementChild?.remove();
     this.log.scrollTop = this.log.scrollHeight;
   }
+}
+
+/** Whether the key does something of its own where it is pressed. */
+function usesEnter(target: EventTarget | null): boolean {
+  if (document.querySelector("dialog[open]")) return true;
+  const controls = "a, button, input, select, textarea, summary";
+  return target instanceof Element && target.closest(controls) !== null;
 }

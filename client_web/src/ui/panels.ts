@@ -2,7 +2,10 @@
 
 export class Panel {
   private static readonly all: Panel[] = [];
-  private readonly narrow = window.matchMedia("(max-width: 640px)");
+  /** As `style/layout.css` has it. */
+  private readonly narrow = window.matchMedia(
+    "(max-width: 540px), (max-width: 640px) and (min-height: 481px)",
+  );
 
   constructor(
     private readonly button: HTMLButtonElement,

@@ -6,15 +6,22 @@ import { byId, element } from "./dom";
 
 export class PeopleList {
   private readonly list = byId("people-list", HTMLElement);
+  private readonly find = byId("people-find", HTMLInputElement);
   private readonly total = byId("people-total", HTMLElement);
   private readonly count = byId("people-count", HTMLElement);
+  private readonly groups = { person: group("People"), actor: group("Actors") };
   private shown = "";
 
   constructor(
     private readonly choose: (id: number) => void,
     private readonly open: (id: number, name: string) => void,
     private readonly isMuted: (name: string) => boolean,
-  ) {}
+  ) {
+    this.list.append(this.groups.person.details, this.groups.actor.details);
+    this.find.addEventListener("input", () => {
+      this.refresh();
+    });
+  }
 
   /** Draw the list anew, though nobody came or went. */
   refresh(): void {
@@ -32,8 +39,17 @@ export class PeopleList {
     this.shown = key;
     const focused = document.activeElement?.getAttribute("data-id");
     this.count.textContent = String(avatars.size);
-    const sorted = [...avatars.values()].sort(byPlaceInList);
-    this.list.replaceChildren(...sorted.map((avatar) => this.row(avatar, chosenId)));
+    const wanted = this.find.value.trim().toLocaleLowerCase();
+    const found = [...avatars.values()]
+      .filter(({ name }) => name.toLocaleLowerCase().includes(wanted))
+      .sort(byPlaceInList);
+    for (const kind of ["person", "actor"] as const) {
+      const { details, count, rows } = this.groups[kind];
+      const ofKind = found.filter((avatar) => avatar.kind === kind);
+      details.hidden = ofKind.length === 0;
+      count.textContent = String(ofKind.length);
+      rows.replaceChildren(...ofKind.map((avatar) => this.row(avatar, chosenId)));
+    }
     if (focused) this.list.querySelector<HTMLElement>(`[data-id="${focused}"]`)?.focus();
   }
 
@@ -69,9 +85,23 @@ export class PeopleList {
   }
 }
 
+interface Group {
+  details: HTMLDetailsElement;
+  count: HTMLElement;
+  rows: HTMLUListElement;
+}
+
+/** A part of the list that one can close, so that it hides no other. */
+function group(title: string): Group {
+  const count = element("span", { class: "count" });
+  const rows = element("ul");
+  const summary = element("summary", {}, `${title} `, count);
+  return { details: element("details", { open: true }, summary, rows), count, rows };
+}
+
+/** The own avatar first, then by name. */
 function byPlaceInList(a: Avatar, b: Avatar): number {
-  const group = ({ own, kind }: Avatar): number => (own ? 0 : kind === "person" ? 1 : 2);
-  return group(a) - group(b) || byName(a.name, b.name);
+  return Number(b.own) - Number(a.own) || byName(a.name, b.name);
 }
 
 function plural(count: number, one: string, many: string): string {

@@ -7,12 +7,13 @@ describe("readAddress", () => {
       operator: "KEY",
       admission: null,
       at: null,
+      lookYaw: null,
       rest: "",
     });
     const both = readAddress("#at=1,2,3&operator=a%20b&more");
     expect(both.operator).toBe("a b");
     expect(both.rest).toBe("#at=1,2,3&more");
-    expect(readAddress("")).toEqual({ operator: null, admission: null, at: null, rest: "" });
+    expect(readAddress("")).toMatchObject({ operator: null, at: null, lookYaw: null, rest: "" });
   });
 
   it("takes a pass or an invitation out too", () => {
@@ -29,6 +30,15 @@ describe("readAddress", () => {
   it("reads a place, with or without a height", () => {
     expect(readAddress("#at=1.5,-2").at).toEqual({ x: 1.5, y: -2, z: 0 });
     expect(readAddress("#at=1,2,3").at).toEqual({ x: 1, y: 2, z: 3 });
+  });
+
+  it("reads the direction of the first view", () => {
+    expect(readAddress("#at=1,2&look=90").lookYaw).toBeCloseTo(Math.PI / 2);
+    expect(readAddress("#look=-45").lookYaw).toBeCloseTo(-Math.PI / 4);
+    expect(readAddress("#look=0").lookYaw).toBe(0);
+    for (const text of ["", "north", "361", "Infinity"]) {
+      expect(readAddress(`#look=${text}`).lookYaw).toBeNull();
+    }
   });
 
   it.each(["", "1", "1,", "a,b", "1,2,3,4", "1,NaN", "Infinity,0", "1,2,1e9"])(

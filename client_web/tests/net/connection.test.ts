@@ -85,8 +85,25 @@ describe("pings", () => {
 
   it("that stay unanswered end the connection", () => {
     comeIn();
-    vi.advanceTimersByTime(10_000);
+    vi.advanceTimersByTime(6_500);
     expect(states.at(-1)).toMatchObject({ phase: "reconnecting", text: "The server fell silent." });
+  });
+
+  it("end it sooner once the device says that it has no network", () => {
+    comeIn();
+    connection.doubt();
+    vi.advanceTimersByTime(2_500);
+    expect(connection.state.phase).toBe("reconnecting");
+  });
+
+  it("keep it, whatever the device says, when they are answered", () => {
+    comeIn();
+    connection.doubt();
+    for (let second = 0; second < 6; second++) {
+      vi.advanceTimersByTime(1_000);
+      newest().say(ServerCode.PONG, { nonce: 0, server_time: second });
+    }
+    expect(connection.state.phase).toBe("live");
   });
 });
 

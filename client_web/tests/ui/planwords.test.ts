@@ -1,0 +1,73 @@
+import { describe, expect, it } from "vitest";
+import { Outcome, Reason } from "../../src/net/codes";
+import type { Plan } from "../../src/net/messages";
+import { behaviourOf, outlookOf, reasonOf } from "../../src/ui/planwords";
+
+const PLAN: Plan = {
+  type: "plan",
+  tick: 1,
+  id: 2,
+  reason: Reason.MOVING,
+  behaviour: "wander",
+  goal: [4, 5, 0],
+  path: [
+    [0, 0, 0, 0],
+    [4, 5, 0, 4.2],
+  ],
+  people: [],
+  since_s: 1,
+  blocker: null,
+  outcome: null,
+  in_the_way: null,
+};
+const MARTA = { kind: "person", id: 7, door: null, away: 0.2 };
+const nameOf = (id: number): string | null => (id === 7 ? "Marta" : null);
+
+describe("the reason", () => {
+  it("names the person for whom an actor waits", () => {
+    const plan = { ...PLAN, reason: Reason.GIVING_WAY, blocker: MARTA };
+    expect(reasonOf(plan, nameOf)).toBe("giving way to Marta");
+    expect(reasonOf({ ...plan, reason: Reason.WAITING }, nameOf)).toBe("waiting for Marta");
+  });
+
+  it("says that somebody is out of sight, and names doors", () => {
+    const plan = { ...PLAN, reason: Reason.WAITING };
+    const stranger = { ...MARTA, id: 8 };
+    const door = { kind: "door", id: null, door: "archive", away: 1 };
+    expect(reasonOf({ ...plan, blocker: stranger }, nameOf)).toBe(
+      "waiting for somebody out of sight",
+    );
+    expect(reasonOf({ ...plan, blocker: door }, nameOf)).toBe("waiting for the door “archive”");
+  });
+
+  it("is how the trip ended, once it has", () => {
+    const plan = { ...PLAN, reason: Reason.WAITING, outcome: Outcome.NEAR, in_the_way: MARTA };
+    expect(reasonOf(plan, nameOf)).toBe("is as near to its goal as it gets: Marta is there");
+    expect(reasonOf({ ...plan, outcome: Outcome.NO_WAY }, nameOf)).toContain("no way leads");
+  });
+});
+
+describe("the behaviour", () => {
+  const places = [
+    { name: "Archive", position: [4.5, 5] as [number, number], z_m: 0 },
+    { name: "Loft", position: [4, 5] as [number, number], z_m: 3.5 },
+  ];
+
+  it("names the place on the same floor that the actor goes to", () => {
+    expect(behaviourOf(PLAN, places)).toBe("wanders between places, now to: Archive");
+  });
+
+  it("names none where there is none, and none when the trip is over", () => {
+    expect(behaviourOf({ ...PLAN, goal: [40, 5, 0] }, places)).toBe("wanders between places");
+    expect(behaviourOf({ ...PLAN, outcome: Outcome.ARRIVED }, places)).toBe(
+      "wanders between places",
+    );
+  });
+});
+
+describe("the outlook", () => {
+  it("tells the path of an actor that walks, and none of one that has arrived", () => {
+    expect(outlookOf(PLAN)).toBe("path for 4 s, 0 people near");
+    expect(outlookOf({ ...PLAN, reason: Reason.ARRIVED })).toBe("0 people near");
+  });
+});
