@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from contextlib import suppress
 from typing import Final
 
-from tests.server.client import Client, connected
+from tests.server.client import PLACING_KEY, Client, connected
 from websockets.exceptions import ConnectionClosed
 
 from chaos.cluster.ledger import Account, Ledger
@@ -37,20 +37,49 @@ ACROSS_S: Final = 9.0
 """It takes about so long to walk to a portal."""
 FASTEST_MPS: Final = 2.0
 
+Place = tuple[float, float, float]
+"""Metres x, y, z."""
+
 
 class Bot:
     """One bot, until it is told to end."""
 
     def __init__(
-        self, name: str, ports: Callable[[], Sequence[int]], ledger: Ledger, seed: int
+        self,
+        name: str,
+        ports: Callable[[], Sequence[int]],
+        ledger: Ledger,
+        seed: int,
+        at: Place | None = None,
     ) -> None:
+        """`ports` returns those at which it may come in now; `at` is the place where it wishes to
+        come in, as an operator may."""
         self._name = name
+        self._at = at
         self._ports = ports
         self._ledger = ledger
         self._chance = random.Random(f"{seed} {name}")
         self._lines = 0
         self.rests = False
         """Whether it stands and says nothing, and only looks."""
+        self.client: Client | None = None
+        """Its connection; None while it has none."""
+
+    async def say(self) -> str:
+        """Say a line that nobody has said; returns it."""
+        account = self._ledger.account(self._name)
+        self._lines += 1
+        line = f"line {self._lines} of {self._name}"
+        self._ledger.said[account.given_name or ""].add(line)
+        self._ledger.counts["lines said"] += 1
+        if self.client is not None:
+            await self.client.send(ChatLine(text=line))
+        return line
+
+    def lose_connection(self) -> None:
+        """End its connection as a network does that breaks."""
+        if self.client is not None:
+            self.client.connection.transport.abort()
 
     async def live(self) -> None:
         """Come in, and come back whenever the connection ends, until cancelled."""
@@ -66,14 +95,22 @@ class Bot:
     async def _visit(self, account: Account) -> None:
         ports = self._ports()
         async with connected(self._chance.choice(ports)) as client:
-            hello = Hello(name=self._name, version=VERSION, resume=account.token)
+            key = None if self._at is None else PLACING_KEY
+            hello = Hello(
+                name=self._name, version=VERSION, resume=account.token, at=self._at, operator=key
+            )
             await client.send(hello)
+            self.client = client
             acting = asyncio.create_task(self._act(client, account))
             try:
                 while True:
                     async with asyncio.timeout(SILENCE_S):
                         await self._next(client, account)
+            except asyncio.CancelledError:
+                await client.connection.close()  # whoever is told to end leaves for good
+                raise
             finally:
+                self.client = None
                 acting.cancel()
                 with suppress(asyncio.CancelledError, ConnectionClosed):
                     await acting
@@ -82,7 +119,6 @@ class Bot:
         ledger = self._ledger
         match await client.next():
             case Welcome() as welcome:
-                client.entities, client.positions = {}, {}
                 ledger.welcomed(account, welcome)
             case Travel():
                 ledger.counts["hops"] += 1
@@ -108,11 +144,7 @@ class Bot:
                 continue
             match self._chance.random():
                 case chance if chance < 0.15:
-                    self._lines += 1
-                    line = f"line {self._lines} of {self._name}"
-                    self._ledger.said[account.given_name or ""].add(line)
-                    self._ledger.counts["lines said"] += 1
-                    await client.send(ChatLine(text=line))
+                    await self.say()
                 case chance if chance < 0.35:
                     x, y = PORTALS[account.zone]
                     client.seq += 1

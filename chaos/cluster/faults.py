@@ -5,7 +5,7 @@ import random
 from collections.abc import Awaitable, Callable, Mapping
 from typing import Final
 
-from tests.server.brokers import NatsServer
+from tests.server.brokers import Brokers, NatsServers
 from tests.server.clustering.clusters import ZONES, Cluster
 from tests.server.databases import PostgresqlServer
 
@@ -25,6 +25,8 @@ KINDS: Final = (
     "zone fenced",
     "zone moved",
 )
+OF_SEVERAL_BROKERS: Final = "one broker killed"
+"""A kind that needs several brokers; with the others all of them are killed or frozen at once."""
 
 Fault = Callable[[], Awaitable[None]]
 
@@ -35,12 +37,13 @@ class Faults:
     def __init__(
         self,
         cluster: Cluster,
-        broker: NatsServer,
+        broker: Brokers,
         database: PostgresqlServer,
         chance: random.Random,
     ) -> None:
         self._cluster = cluster
         self._broker = broker
+        self._brokers = broker.servers if isinstance(broker, NatsServers) else [broker]
         self._database = database
         self._chance = chance
         happen: tuple[Fault, ...] = (
@@ -55,7 +58,10 @@ class Faults:
             self.fence_zone,
             self.move_zone,
         )
-        self.kinds: Mapping[str, Fault] = dict(zip(KINDS, happen, strict=True))
+        self.kinds: Mapping[str, Fault] = {
+            **dict(zip(KINDS, happen, strict=True)),
+            OF_SEVERAL_BROKERS: self.kill_one_broker,
+        }
 
     async def kill_host(self) -> None:
         """An owner of a zone is killed."""
@@ -101,6 +107,13 @@ class Faults:
         self._broker.kill()
         await asyncio.sleep(BROKER_AWAY_S)
         await asyncio.to_thread(self._broker.start)
+
+    async def kill_one_broker(self) -> None:
+        """One of several brokers is killed, and is back after a second."""
+        one = self._chance.choice(self._brokers)
+        one.kill()
+        await asyncio.sleep(BROKER_AWAY_S)
+        await asyncio.to_thread(one.start)
 
     async def freeze_broker(self) -> None:
         """The broker stands still for a second."""

@@ -93,27 +93,37 @@ class Ledger:
         return worst_s
 
     def check_rest(self, seats: list[str]) -> None:
-        """Check what must hold when nothing has happened for a while.
+        """Note as faults what cannot be when nothing has happened for a while."""
+        self.faults += self.unrest(seats)
+
+    def unrest(self, seats: list[str]) -> list[str]:
+        """The things that cannot be when nothing has happened for a while, a sentence each.
 
         Every bot is in, each has one seat and nobody else has any, and each sees those who are in
         the same zone and nobody else.
         """
+        found: list[str] = []
         in_zones: defaultdict[str, set[str]] = defaultdict(set)
         for account in self.accounts.values():
             if account.zone is None or account.given_name is None:
-                self._fault(f"{account.name} is not in")
+                found.append(f"{account.name} is not in")
             else:
                 in_zones[account.zone].add(account.given_name)
         expected = sorted(each.given_name or each.name for each in self.accounts.values())
         if expected != seats:
-            self._fault(f"there are seats of {seats}, and bots called {expected}")
+            found.append(f"there are seats of {seats}, and bots called {expected}")
         for account in self.accounts.values():
             seen = {each.name for each in account.seen.values() if each.kind == "person"}
             there = in_zones[account.zone or ""]
-            for ghost in sorted(seen - there):
-                self._fault(f"{account.name} sees {ghost}, who is not in {account.zone}")
-            for missing in sorted(there - seen):
-                self._fault(f"{account.name} does not see {missing} in {account.zone}")
+            found += [
+                f"{account.name} sees {ghost}, who is not in {account.zone}"
+                for ghost in sorted(seen - there)
+            ]
+            found += [
+                f"{account.name} does not see {missing} in {account.zone}"
+                for missing in sorted(there - seen)
+            ]
+        return found
 
     def _fault(self, text: str) -> None:
         self.faults.append(text)

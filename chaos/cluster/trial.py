@@ -3,16 +3,16 @@
 import asyncio
 import random
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Final
 
-from tests.server.brokers import NatsServer
+from tests.server.brokers import Brokers
 from tests.server.clustering.clusters import Cluster
 from tests.server.databases import PostgresqlServer
 
 from chaos.cluster.bots import Bot
-from chaos.cluster.faults import KINDS, Faults
+from chaos.cluster.faults import Faults
 from chaos.cluster.ledger import Ledger
 
 BETWEEN_S: Final = (1.0, 3.0)
@@ -36,7 +36,7 @@ class Outcome:
 
 async def run_trial(
     cluster: Cluster,
-    broker: NatsServer,
+    broker: Brokers,
     database: PostgresqlServer,
     seed: int,
     bots: int,
@@ -76,11 +76,11 @@ async def run_trial(
     return outcome
 
 
-def drawn(seed: int, seconds: float) -> Iterator[str]:
-    """Faults that are drawn by a seed, for so long."""
+def drawn(seed: int, seconds: float, kinds: Sequence[str]) -> Iterator[str]:
+    """Faults of these kinds that are drawn by a seed, for so long."""
     chance, end_s = random.Random(f"faults {seed}"), time.monotonic() + seconds
     while time.monotonic() < end_s:
-        yield chance.choice(KINDS)
+        yield chance.choice(kinds)
 
 
 async def _all_in(ledger: Ledger, bots: int) -> None:

@@ -44,8 +44,11 @@ async def connected(servers: Sequence[str], name: str) -> AsyncIterator[Client]:
         if not ending:
             log.warning("broker lost", servers=list(servers))
 
+    def server() -> str | None:
+        return client.connected_url and client.connected_url.netloc
+
     async def back() -> None:
-        log.info("broker back", server=client.connected_url and client.connected_url.netloc)
+        log.info("broker back", server=server())
 
     async def failed(error: Exception) -> None:
         log.debug("broker failed", error=str(error) or type(error).__name__)
@@ -73,6 +76,7 @@ async def connected(servers: Sequence[str], name: str) -> AsyncIterator[Client]:
         raise BrokerError(
             f"no NATS server answers at {places}: {str(error) or 'too late'}"
         ) from None
+    log.info("broker there", server=server())
     try:
         yield client
     finally:

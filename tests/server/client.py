@@ -66,7 +66,8 @@ class Client:
         assert message is not None
         match message:
             case Welcome():
-                self.welcome = message
+                # It begins anew with nobody in view, also behind a portal.
+                self.welcome, self.entities, self.positions = message, {}, {}
             case Enter():
                 self.entities.update({entity.id: entity for entity in message.entities})
             case Leave():

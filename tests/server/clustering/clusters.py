@@ -20,7 +20,7 @@ from sqlalchemy import Connection, create_engine, text
 from esplanade.cli import main
 from esplanade.server.store.location import Location
 from tests.patience import COMPILING_PATIENCE_S, PATIENCE_S
-from tests.server.brokers import NatsServer
+from tests.server.brokers import Brokers
 from tests.server.client import PLACING_KEY
 
 ZONES: Final = ("yard", "hall")
@@ -28,7 +28,9 @@ HOSTS: Final = 3
 """An owner for each zone, and one that stands by."""
 GATEWAYS: Final = 2
 
-RESUME_S: Final = 12.0
+RESUME_S: Final = 120.0
+"""For so long the avatars of people wait whose connection was lost: a slow machine begins other
+processes meanwhile."""
 
 
 class Said(NamedTuple):
@@ -81,6 +83,10 @@ class Process:
         """The port at which it says how it is."""
         url: str = self.wait_for("health")["url"]
         return int(url.rsplit(":", 1)[1])
+
+    @property
+    def pid(self) -> int:
+        return self._process.pid
 
     @property
     def is_running(self) -> bool:
@@ -172,7 +178,7 @@ Kind = TypeVar("Kind", bound=Process)
 class Cluster:
     """Processes that share a database and a broker; all of them end with the test."""
 
-    def __init__(self, database: str, broker: NatsServer, resume_s: float) -> None:
+    def __init__(self, database: str, broker: Brokers, resume_s: float) -> None:
         self.database = database
         self.broker = broker
         self.processes: list[Process] = []
@@ -199,10 +205,11 @@ class Cluster:
         done = self.command("init", str(world))
         assert done.code == 0, done.errors
 
-    def host(self, *words: str, name: str) -> Process:
-        """Begin a host."""
+    def host(self, *words: str, name: str, actors: int = 1, **environment: str) -> Process:
+        """Begin a host, with further variables of its environment."""
+        ours = {**self.environment, **environment}
         return self._begun(
-            Process(name, ["zone", *words, "--actors", "1", *self._waiting], self.environment)
+            Process(name, ["zone", *words, "--actors", str(actors), *self._waiting], ours)
         )
 
     def gateway(self, *words: str, name: str) -> Gateway:
@@ -319,7 +326,7 @@ class Cluster:
 
 
 @contextmanager
-def cluster(database: str, broker: NatsServer, resume_s: float = RESUME_S) -> Iterator[Cluster]:
+def cluster(database: str, broker: Brokers, resume_s: float = RESUME_S) -> Iterator[Cluster]:
     """A cluster of processes that end with it; avatars of lost people wait for so long."""
     made = Cluster(database, broker, resume_s)
     try:

@@ -81,7 +81,6 @@ async def test_people_go_through_a_portal_to_a_zone_of_another_host(at_town: Clu
         await ann.move(0.0, 1.5)
         travel = await ann.until(Travel)
         assert (travel.zone, travel.portal) == ("hall", "door")
-        ann.entities.clear()
         await ann.wait_for(lambda: ann.welcome is not None and ann.welcome.resume == token)
         await ann.wait_for(lambda: ann.id in ann.positions and ann.position[0] < 6.0)
         assert (ann.id, ann.welcome.name) == (person, "Ann")

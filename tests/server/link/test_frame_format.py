@@ -136,13 +136,13 @@ def _another_audience(trial: Trial) -> Audience:
     return Audience(trial.world.rules, trial.world.origin_m, trial.world.times)
 
 
-def inputs_of(trial: Trial, tick: int) -> list[Input]:
-    """People who come, walk about, talk, go away and come back."""
+def inputs_of(trial: Trial, tick: int, most: int = PEOPLE - 5) -> list[Input]:
+    """At most so many people, who come, walk about, talk, go away and come back."""
     rng = np.random.default_rng(tick)
     state = trial.world.state
     people = [one for one in state.ids[state.live()].tolist() if one in _persons(trial)]
     inputs: list[Input] = []
-    if len(people) < PEOPLE - 5:
+    if len(people) < most:
         inputs.append(Join(tick, f"p{tick}", (60.0 + tick % 20, 70.0 + tick % 7, 0.0)))
     inputs += [
         Steer(one, tick, float(rng.uniform(0.0, 6.28)), 1.4) for one in people if rng.random() < 0.1

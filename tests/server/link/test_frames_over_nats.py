@@ -16,10 +16,9 @@ from esplanade.server.link.frame_parts import FrameKey
 from esplanade.server.link.frames_over_nats import FRAMES_WAITING, FrameReceiver, FrameSender
 from esplanade.server.link.subjects import Subjects
 from esplanade.server.link.whole_state import WholeState
-from esplanade.server.world.audience import Audience
 from tests.patience import PATIENCE_S
 from tests.server.brokers import NatsServer, nats_server
-from tests.server.link.test_frame_format import assert_same, inputs_of, same
+from tests.server.link.test_frame_format import inputs_of, same
 from tests.server.worlds import FIELD, Trial
 
 SUBJECTS: Final = Subjects("town")
@@ -98,29 +97,6 @@ async def until(receiver: FrameReceiver, done: Callable[[FrameKey], bool]) -> li
         else:
             assert (other.epoch, other.tick) == (one.epoch, one.tick + 1)
     return keys
-
-
-async def test_viewers_are_told_the_same_bytes_over_a_broker(server: NatsServer) -> None:
-    trial = Trial(FIELD, max_people=40)
-    near = trial.audience
-    far = Audience(trial.world.rules, trial.world.origin_m, trial.world.times)
-    async with connected([server.address], "host") as ours, receiving(server) as receiver:
-        sender = FrameSender(ours, SUBJECTS, "hall", lambda: (FrameKey(5, 0, is_whole=True), b""))
-        await sender.start()
-        async with asyncio.timeout(PATIENCE_S):
-            assert await receiver.next() == (FrameKey(5, 0, is_whole=True), b"")
-            for tick in range(200):
-                frame = trial.frame(*inputs_of(trial, tick))
-                assert await sender.publish(FrameKey(5, frame.tick), encode_frame(frame))
-                key, body = await receiver.next()
-                assert key == FrameKey(5, frame.tick)
-                here, there = near.take(frame), far.take(decode_frame(body))
-                assert_same(here, there)
-                places = list(range(len(here.snapshots.viewers)))
-                near.wrote(here.snapshots, places)
-                far.wrote(there.snapshots, places)
-        await sender.stop()
-    assert len(trial.world.state.ids[trial.world.state.live()]) > 20
 
 
 async def test_a_broker_that_is_killed_loses_nothing_of_the_state(server: NatsServer) -> None:
