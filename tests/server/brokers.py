@@ -6,7 +6,7 @@ import signal
 import socket
 import subprocess
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import Final
 
@@ -22,8 +22,13 @@ REQUIRE_VARIABLE: Final = "ESPLANADE_REQUIRE_NATS"
 class NatsServer:
     """A broker that a test kills, freezes and starts again at the same address."""
 
-    def __init__(self, program: str) -> None:
+    def __init__(
+        self, program: str, words: Sequence[str] = (), environment: Mapping[str, str] | None = None
+    ) -> None:
+        """`words` are more of its options, `environment` more of its variables."""
         self._program = program
+        self._words = words
+        self._environment = {**os.environ, **(environment or {})}
         self._process: subprocess.Popen[bytes] | None = None
         (self._port,) = free_ports(1)
 
@@ -33,9 +38,13 @@ class NatsServer:
 
     def start(self) -> None:
         """Begin, and wait until somebody listens."""
-        words = [self._program, "-a", "127.0.0.1", "-p", str(self._port)]
+        words = [self._program, *self._words, "-a", "127.0.0.1", "-p", str(self._port)]
         self._process = subprocess.Popen(
-            words, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+            words,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+            env=self._environment,
         )
         end = time.monotonic() + PATIENCE_S
         while time.monotonic() < end:
@@ -67,15 +76,15 @@ class NatsServer:
 
 
 @contextmanager
-def nats_server() -> Iterator[NatsServer]:
-    """Run a broker of its own."""
+def nats_server(*words: str, environment: Mapping[str, str] | None = None) -> Iterator[NatsServer]:
+    """Run a broker of its own, with more options and variables."""
     program = shutil.which("nats-server") or shutil.which("nats-server", path="/usr/sbin")
     if program is None:
         why = "nats-server is not installed here: apt-get install nats-server"
         if os.environ.get(REQUIRE_VARIABLE) == "1":
             pytest.fail(f"{REQUIRE_VARIABLE}=1, but {why}")
         pytest.skip(why)
-    server = NatsServer(program)
+    server = NatsServer(program, words, environment)
     server.start()
     try:
         yield server
