@@ -7,12 +7,9 @@ answered here too.
 import asyncio
 from collections.abc import Awaitable, Callable, Collection
 from contextlib import suppress
-from http import HTTPStatus
 from typing import Any, Final
 
-from starlette.exceptions import HTTPException
 from starlette.requests import HTTPConnection, Request
-from starlette.responses import JSONResponse
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
@@ -22,11 +19,10 @@ from esplanade.server.console.callers import HEADER, Standing
 from esplanade.server.console.gate import Gate
 from esplanade.server.console.live_socket import IDENTITY_ENDED
 from esplanade.server.console.refusals import RefusedError
-from esplanade.server.console.routing import answer_to, told
+from esplanade.server.console.routing import answer_to
 from esplanade.server.console.zone_paths import zone_of
 from esplanade.server.gateway.calls_out import CallLostError, CallsOut, NoHostError, OpenCall
 from esplanade.server.link.calls import Begun, Call, Caller, Closed, Part
-from esplanade.server.net.asgi import MAX_BODY_BYTES
 from esplanade.server.store.store import StoreError
 
 PASSED_ON: Final = (b"accept", b"content-type", HEADER.lower().encode(), b"if-none-match")
@@ -81,7 +77,7 @@ class ForwardedToHosts:
 
         try:
             identity = await self._gate.callers.identity(request)
-            body = await _body(request)
+            body = await request.body()  # the application bounds it
             zone = await self._zone(scope)
             call = self._call(request, identity, body)
             async with self._calls.begun(zone, call) as opened:
@@ -99,10 +95,6 @@ class ForwardedToHosts:
             if not begun:
                 text = f"{error}; it may still do what was asked"
                 await answer_to(RefusedError.of("not_known", text))(scope, receive, send)
-        except _TooLongError:
-            refusal = RefusedError.of("invalid", f"a body has at most {MAX_BODY_BYTES} bytes")
-            status = HTTPStatus.REQUEST_ENTITY_TOO_LARGE
-            await JSONResponse(told(refusal), status)(scope, receive, send)
 
     async def _relay(self, opened: OpenCall, receive: Receive, send: Send) -> None:
         """Write an answer as it comes, for as long as its client is there."""
@@ -197,24 +189,6 @@ def caller_of(identity: Identity) -> Caller:
         identity.via,
         identity.address,
     )
-
-
-class _TooLongError(Exception):
-    """A request has a longer body than is taken."""
-
-
-async def _body(request: Request) -> bytes:
-    body = b""
-    try:
-        async for part in request.stream():
-            body += part
-            if len(body) > MAX_BODY_BYTES:
-                raise _TooLongError
-    except HTTPException as error:
-        if error.status_code != HTTPStatus.REQUEST_ENTITY_TOO_LARGE:
-            raise
-        raise _TooLongError from None
-    return body
 
 
 async def _left(receive: Receive) -> None:
