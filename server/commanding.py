@@ -2,6 +2,7 @@
 
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
+from typing import NamedTuple
 
 from esplanade.protocol.preset_files import PresetFileError
 from esplanade.server.console.console import Console
@@ -13,24 +14,32 @@ from esplanade.server.live.live import Live
 from esplanade.server.loading import LoadedScene, LoadingError
 from esplanade.server.metrics import Metrics
 from esplanade.server.net.door_commands import DoorCommands
-from esplanade.server.net.hub import Hub
+from esplanade.server.net.moderation import PeopleModeration
 from esplanade.server.settings import ServerSettings
 from esplanade.server.watching import watch_console
 from esplanade.server.world.pace import Pace
 from esplanade.server.world.zone import Zone
 
 
+class Commanded(NamedTuple):
+    """The ways of commands into a zone."""
+
+    console: Console
+    doors: DoorCommands
+    """The doors of operators who walk about."""
+
+
 @asynccontextmanager
 async def commanding(
     world: Zone,
-    hub: Hub,
+    moderation: PeopleModeration,
     kept: Kept,
     loaded: LoadedScene,
     metrics: Metrics,
     presets: Presets,
     pace: Pace,
     bulletin: Bulletin,
-) -> AsyncIterator[Console]:
+) -> AsyncIterator[Commanded]:
     """Make the console, which all commands of operators go through; the bulletin hears of them.
 
     Raises
@@ -39,8 +48,8 @@ async def commanding(
         What operators have made cannot be read.
     """
     overrides = None if loaded.roster is None else loaded.roster.overrides
-    console = Console(world, hub.moderation, kept.store, kept.audit, overrides, presets, pace)
-    hub.wishes.by_commands = doors = DoorCommands(console, kept.directory.again)
+    console = Console(world, moderation, kept.store, kept.audit, overrides, presets, pace)
+    doors = DoorCommands(console, kept.directory.again)
     watch_console(console, doors, metrics)
     console.figures.add(
         "tick_p99_ms",
@@ -52,7 +61,7 @@ async def commanding(
     console.listen(bulletin.heard)
     await console.load_operated()
     try:
-        yield console
+        yield Commanded(console, doors)
     finally:
         await console.close()
 
@@ -61,7 +70,7 @@ def live_view(
     world: Zone,
     storeys: list[float],
     console: Console,
-    hub: Hub,
+    moderation: PeopleModeration,
     metrics: Metrics,
     settings: ServerSettings,
     bulletin: Bulletin,
@@ -75,7 +84,7 @@ def live_view(
         hide_names=settings.hide_names,
         groups=lambda spec: console.state.groups.names(spec),  # noqa: PLW0108 - they are replaced
     )
-    hub.moderation.listeners.append(live.bulletin.heard)
+    moderation.listeners.append(live.bulletin.heard)
     return live
 
 

@@ -2,6 +2,7 @@
 
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
+from dataclasses import replace
 from typing import Final
 
 import structlog
@@ -40,8 +41,7 @@ async def keeping(settings: ServerSettings, metrics: Metrics) -> AsyncIterator[K
     """
     location = Location.of(settings.data, settings.store.get_secret_value())
     async with open_store(location, durable=settings.durable) as store:
-        audit, passwords, lockout = AuditLog(store, WRITER), Passwords(), Lockout()
-        _watch(store, lockout, metrics)
+        audit = AuditLog(store, WRITER)
         if location.in_memory:
             log.info("nothing is kept when this ends; --data keeps the world and its operators")
         else:
@@ -49,24 +49,43 @@ async def keeping(settings: ServerSettings, metrics: Metrics) -> AsyncIterator[K
         body = {"fresh": True} if settings.fresh else {}
         started = await audit.record(Entry(command="server_start", body=body))
         try:
-            async with moderating(settings, store, metrics) as moderation:
-                yield Kept(
-                    store,
-                    audit,
-                    passwords,
-                    lockout,
-                    Directory(store, audit, passwords),
-                    Sessions(store, audit, passwords, lockout),
-                    Tokens(store, audit),
-                    OneTime(store, audit, passwords),
-                    Invitations(store, audit),
-                    Bots(store, audit),
-                    moderation,
-                    started,
-                )
+            async with kept_in(store, settings, metrics) as kept:
+                yield replace(kept, started=started)
         finally:
-            passwords.close()
             await audit.record(Entry(command="server_stop"))
+
+
+@asynccontextmanager
+async def kept_in(
+    store: SqlStore, settings: ServerSettings, metrics: Metrics
+) -> AsyncIterator[Kept]:
+    """All that stands on a store that is open.
+
+    Raises
+    ------
+    StoreError
+        The store cannot be used.
+    """
+    audit, passwords, lockout = AuditLog(store, WRITER), Passwords(), Lockout()
+    _watch(store, lockout, metrics)
+    try:
+        async with moderating(settings, store, metrics) as moderation:
+            yield Kept(
+                store,
+                audit,
+                passwords,
+                lockout,
+                Directory(store, audit, passwords),
+                Sessions(store, audit, passwords, lockout),
+                Tokens(store, audit),
+                OneTime(store, audit, passwords),
+                Invitations(store, audit),
+                Bots(store, audit),
+                moderation,
+                started=0,
+            )
+    finally:
+        passwords.close()
 
 
 def _watch(store: SqlStore, lockout: Lockout, metrics: Metrics) -> None:

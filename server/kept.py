@@ -31,4 +31,5 @@ class Kept:
     bots: Bots
     moderation: ModerationState
     started: int
-    """The row of the audit that says that this server has started."""
+    """The row of the audit that says that this server, or this zone, has started; 0 where none
+    does."""

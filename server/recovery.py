@@ -74,10 +74,7 @@ async def read_recovery(
         raise CheckpointError(f"the checkpoint is not whole: {WHAT_HELPS}")
     tail = Tail()
     if found.parts is not None:
-        begun, settled = with_faults_told("console", _numbers, parts["console"])
-        rows = await kept.audit.own_rows(begun, MOST_ROWS)
-        rows = [row for row in rows if row.seq < kept.started]
-        tail = with_faults_told("audit", lambda rows: read_tail(rows, settled), rows)
+        tail = await tail_after(kept, parts["console"])
     left = with_faults_told(
         "seats",
         partial(
@@ -94,7 +91,23 @@ async def read_recovery(
     return Recovery(scene, Parts(found.parts), found.ids, parts.get("zone"), tick, tail, left)
 
 
-async def tell_the_lost(recovery: Recovery, kept: Kept) -> None:
+async def tail_after(kept: Kept, console: Any) -> Tail:
+    """The commands that the audit has from before this start, of a world whose console was saved.
+
+    Raises
+    ------
+    CheckpointError
+        It cannot be used.
+    StoreError
+        The store cannot be used.
+    """
+    begun, settled = with_faults_told("console", _numbers, console)
+    rows = await kept.audit.own_rows(begun, MOST_ROWS)
+    rows = [row for row in rows if row.seq < kept.started]
+    return with_faults_told("audit", lambda rows: read_tail(rows, settled), rows)
+
+
+async def tell_the_lost(tail: Tail, kept: Kept) -> None:
     """Write into the audit which commands never happened.
 
     Raises
@@ -102,7 +115,7 @@ async def tell_the_lost(recovery: Recovery, kept: Kept) -> None:
     StoreError
         It could not be written.
     """
-    entries = [not_done(row) for row in recovery.tail.lost]
+    entries = [not_done(row) for row in tail.lost]
     if entries:
         log.warning("commands were under way and are not done", commands=len(entries))
         await kept.store.write(

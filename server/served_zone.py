@@ -200,12 +200,21 @@ async def served_zone(
         )
         bulletin = Bulletin()
         travel = None if surroundings is None else ActorTravel(world)
+        commanded = await stack.enter_async_context(
+            commanding(
+                world,
+                hub.moderation,
+                kept,
+                loaded,
+                metrics,
+                process.presets,
+                schedule.pace,
+                bulletin,
+            )
+        )
+        hub.wishes.by_commands = commanded.doors
         console = await resume(
-            await stack.enter_async_context(
-                commanding(
-                    world, hub, kept, loaded, metrics, process.presets, schedule.pace, bulletin
-                )
-            ),
+            commanded.console,
             recovery,
             kept,
             hub,
@@ -233,7 +242,7 @@ async def served_zone(
         if travel is not None:
             ticker.with_travel(travel)
             metrics.total("actors_came", "Actors who came from other zones", partial(_came, travel))
-        live = live_view(world, storeys, console, hub, metrics, settings, bulletin)
+        live = live_view(world, storeys, console, hub.moderation, metrics, settings, bulletin)
         ticker.tap = live.tap
         ticker.trajectories = await stack.enter_async_context(
             trajectories_kept(settings, loaded, world, metrics, live.bulletin)

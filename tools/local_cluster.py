@@ -26,6 +26,8 @@ from esplanade.planning.scene.world_file import WorldError, read_world
 
 TOWN: Final = Path(__file__).parent.parent / "scenes" / "town.json"
 FIRST_PORT: Final = 8080
+PRIVATE_PORTS: Final = 100
+"""The ports for operators are so many above those for people."""
 
 
 def main(words: Sequence[str] | None = None) -> int:
@@ -78,12 +80,13 @@ def run(options: argparse.Namespace, zones: Sequence[str]) -> int:
             processes.append(process)
 
         for number in range(options.gateways):
-            begin(
-                "gateway", "--name", f"gateway-{number + 1}", "--port", str(options.port + number)
-            )
+            port, private = options.port + number, options.port + PRIVATE_PORTS + number
+            ports = "--port", str(port), "--private-port", str(private)
+            begin("gateway", "--name", f"gateway-{number + 1}", *ports)
         for number in range(len(zones) + options.standby):
             begin("zone", "--name", f"host-{number + 1}")
-        print(f"\n  to look at it: ESPLANADE_STORE='{database}' esplanade cluster status\n")
+        print(f"\n  to look at it: ESPLANADE_STORE='{database}' esplanade cluster status")
+        print(f"  for operators: http://localhost:{options.port + PRIVATE_PORTS}/console/\n")
         while any(process.poll() is None for process in processes):
             time.sleep(0.5)
     return 0

@@ -1,6 +1,6 @@
 """A host's knowledge of whose client may steer each person: the newest occupation of the seat."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Final
 
@@ -30,6 +30,9 @@ class Occupations:
 
     def __contains__(self, person: int) -> bool:
         return person in self._by_person
+
+    def __iter__(self) -> Iterator[int]:
+        return iter(self._by_person)
 
     def of(self, person: int) -> Occupation | None:
         """The newest occupation of a person's seat that is known."""

@@ -29,10 +29,16 @@ class PersonRecord(BaseModel):
     """Whether that very place is meant; otherwise the spawn that is nearest to it is."""
     operator: bool = False
     """Whether the person may move doors."""
+    account: str = ""
+    """The account of an operator who walks about as oneself; empty for others."""
     portal: str = ""
     """The portal out of which the person comes; empty for a newcomer."""
     muted: tuple[int, ...] = ()
     """Those whom the person does not want to hear."""
+    silent_s: Annotated[float, Field(ge=0.0, allow_inf_nan=False)] = 0.0
+    """For how many seconds nobody hears the person yet, from the moment of coming into the zone."""
+    wished: str = ""
+    """The name that the person asked for; the seat's may have a number behind it."""
 
 
 def encode_record(record: PersonRecord) -> bytes:

@@ -38,6 +38,8 @@ class ClusterSeat:
     """The moment since which nobody steers; None while somebody does."""
     state: bytes = field(repr=False)
     """The record of the person, as it was written last."""
+    digests: tuple[bytes, ...] = field(default=(), repr=False)
+    """SHA-256 of the tokens that take the seat, the newest last."""
 
 
 def take(
@@ -106,10 +108,7 @@ def resume(
     table, used, renewed = CLUSTER_SEATS.c, digest_of(token), _new_token()
     changed = (
         update(CLUSTER_SEATS)
-        .where(
-            or_(table.newest == used, table.used == used),
-            or_(table.vacated_us.is_(None), table.vacated_us > now - keep_us),
-        )
+        .where(*_taken_by(used, keep_us, now))
         .values(
             generation=table.generation + 1,
             gateway=gateway,
@@ -121,6 +120,12 @@ def resume(
     )
     row = connection.execute(changed).one_or_none()
     return None if row is None else (_seat(row), renewed)
+
+
+def has(connection: Connection, token: str, keep_us: int, *, now: Moment = NOW_US) -> bool:
+    """Whether a token takes a seat."""
+    chosen = select(CLUSTER_SEATS.c.person).where(*_taken_by(digest_of(token), keep_us, now))
+    return connection.execute(chosen).one_or_none() is not None
 
 
 def confirm(connection: Connection, person: int, generation: int) -> bool:
@@ -146,6 +151,20 @@ def reoccupy(connection: Connection, person: int, generation: int, gateway: str)
 def leave(connection: Connection, person: int, generation: int) -> bool:
     """Remove the seat of a person who goes for good."""
     gone = delete(CLUSTER_SEATS).where(*_held(person, generation))
+    return connection.execute(gone).rowcount == 1
+
+
+def expel(connection: Connection, owner: Claim, person: int) -> bool:
+    """Remove the seat of a person whom operators send out, whoever has taken it last.
+
+    Raises
+    ------
+    NotOwnerError
+        The zone is another host's.
+    """
+    assert_owned(connection, owner)
+    table = CLUSTER_SEATS.c
+    gone = delete(CLUSTER_SEATS).where(table.person == person, table.zone == owner.zone)
     return connection.execute(gone).rowcount == 1
 
 
@@ -241,6 +260,17 @@ def _held(person: int, generation: int) -> tuple[ColumnElement[bool], ColumnElem
     return (table.person == person, table.generation == generation)
 
 
+def _taken_by(
+    digest: str, keep_us: int, now: Moment
+) -> tuple[ColumnElement[bool], ColumnElement[bool]]:
+    """The seat that a token of this digest takes."""
+    table = CLUSTER_SEATS.c
+    return (
+        or_(table.newest == digest, table.used == digest),
+        or_(table.vacated_us.is_(None), table.vacated_us > now - keep_us),
+    )
+
+
 def _new_token() -> str:
     return secrets.token_urlsafe(_TOKEN_BYTES)
 
@@ -255,4 +285,5 @@ def _seat(row: Row[Any]) -> ClusterSeat:
         gateway=row.gateway,
         vacated_us=row.vacated_us,
         state=row.state,
+        digests=tuple(bytes.fromhex(each) for each in (row.used, row.newest) if each is not None),
     )

@@ -47,6 +47,8 @@ def _settings(options: Namespace, table: Settings) -> tuple[ServerSettings, Memb
         raise UsageError(str(error)) from None
     # Variables of a server that is the whole world mean nothing here.
     alone = {"store": "", "data": None, "scene": None, "world": None, "crowd": None}
+    if "private_port" in (name for group in table.groups.values() for name in group):
+        alone["private_port"] = table.setting("private_port").default
     return fields.made(ServerSettings, {**alone, **given}), membership
 
 

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Any, Final
 
 from esplanade.commandline.parser import Parser
-from esplanade.commandline.readers import Text, Whole
+from esplanade.commandline.readers import InputFile, Text, Whole
 from esplanade.commandline.settings import Setting, Settings, settings_parser
 from esplanade.server.options import SETTINGS as SERVER
 from esplanade.server.options import check as check_server
@@ -18,10 +18,22 @@ CLUSTER: Final = {
     ),
     "nats": Setting(
         "NATS servers that carry frames and inputs, separated by commas, such as "
-        "nats://127.0.0.1:4222",
+        "nats://127.0.0.1:4222, or tls://broker:4222 with encryption",
         Text(),
         "nats://127.0.0.1:4222",
     ),
+    "nats_login": Setting(
+        "file with the user on its first line and the password on its second; without it, those of "
+        "ESPLANADE_NATS_USER and ESPLANADE_NATS_PASSWORD, if there are any",
+        InputFile(),
+    ),
+    "nats_ca": Setting(
+        "certificates by which NATS servers at tls://… are trusted, PEM; without it, those that "
+        "the system trusts",
+        InputFile(),
+    ),
+    "nats_cert": Setting("certificate by which NATS servers know this process, PEM", InputFile()),
+    "nats_key": Setting("private key of that certificate, PEM", InputFile()),
     "name": Setting(
         "name of this process in the cluster, which no other has: a-z, 0-9 and -; without it, the "
         "name of the machine and a few letters",
@@ -68,6 +80,23 @@ _LIMITS: Final = (
 )
 
 
+_ADMISSION: Final = ("closed", "world_password", "identity_header")
+_PRIVATE: Final = (
+    "private_host",
+    "private_port",
+    "private_tls_cert",
+    "private_tls_key",
+    "private_names",
+    "behind_proxy",
+)
+
+
+def _private() -> dict[str, Setting]:
+    """The options of operators' port; gateways on one machine take free ones by default."""
+    found = _of_server("network", *_PRIVATE)
+    return {**found, "private_port": found["private_port"]._replace(default=0)}
+
+
 def _check(given: Mapping[str, Any]) -> None:
     if not given.get("store"):
         raise ValueError(
@@ -83,6 +112,11 @@ ZONE: Final = Settings(
         "cluster": CLUSTER,
         "world": _of_server("world", "actors", "seed", "tick_rate", "planning_interval"),
         "people": {**_of_server("people"), **_of_server("limits on clients", "max_clients")},
+        "operators": {
+            **_of_server("world", "presets"),
+            **_of_server("limits on clients", "operator_commands", "hide_names"),
+            **_of_server("data", "keep_chat", "keep_chat_days"),
+        },
         "logs": _of_server("logs"),
     },
     _check,
@@ -92,8 +126,9 @@ GATEWAY: Final = Settings(
     {
         "cluster": CLUSTER,
         "network": _of_server("network", *_PORTS),
+        "operators": _private(),
         "limits on clients": {
-            **_of_server("limits on clients", *_LIMITS),
+            **_of_server("limits on clients", *_ADMISSION, *_LIMITS),
             **_of_server("people", "resume_seconds"),
         },
         "logs": _of_server("logs"),

@@ -6,6 +6,7 @@ import secrets
 import signal
 from collections.abc import AsyncIterator, Callable, Sequence
 from contextlib import asynccontextmanager
+from functools import partial
 from typing import Any, Final
 
 import structlog
@@ -13,11 +14,17 @@ from nats.aio.client import Client
 
 from esplanade.commandline import interrupts
 from esplanade.server.clustering.membership import Membership
-from esplanade.server.entrances import in_url
+from esplanade.server.commanding import shipped_presets
+from esplanade.server.entrances import in_url, private_url
 from esplanade.server.gateway.gateway import gateway
 from esplanade.server.host.host import Host, read_world
-from esplanade.server.link.broker import connected
+from esplanade.server.host.hosted_zone import HostProcess
+from esplanade.server.host.operators import host_operators
+from esplanade.server.keeping import kept_in
+from esplanade.server.kept import Kept
+from esplanade.server.link.broker import broker_for, connected
 from esplanade.server.link.process_metrics import process_metrics
+from esplanade.server.link.subjects import Subjects
 from esplanade.server.loading import LoadingError
 from esplanade.server.metrics import Metrics
 from esplanade.server.net.health import health_port
@@ -52,12 +59,27 @@ async def run_host(settings: ServerSettings, membership: Membership, zones: Sequ
                     f"the world has no zone {name!r}; it has: {', '.join(sorted(known))}"
                 )
         stop, metrics = asyncio.Event(), process_metrics(known, broker)
-        host = Host(membership.name, world, zones, store, broker, metrics, stop)
-        async with _health(membership, metrics, lambda: host.hindrance):
-            # Until then there is nothing to put in order, but a thread that cannot be interrupted.
-            await asyncio.to_thread(host.warm_up)
-            _stop_by_signals(stop)
-            await host.run()
+        presets, subjects = shipped_presets(settings), Subjects(world.kept.subject)
+        to_broker = broker_for(membership.servers, f"{membership.name} operators", membership.login)
+        async with (
+            _shared(membership, settings, metrics) as kept,
+            host_operators(settings, kept, metrics, subjects, to_broker) as operators,
+        ):
+            host = Host(
+                membership.name,
+                world,
+                zones,
+                HostProcess(store, kept, presets, broker, subjects),
+                operators,
+                metrics,
+                stop,
+            )
+            async with _health(membership, metrics, lambda: host.hindrance):
+                # Until then there is nothing to put in order, but a thread that cannot be
+                # interrupted.
+                await asyncio.to_thread(host.warm_up)
+                _stop_by_signals(stop)
+                await host.run()
 
 
 async def run_gateway(settings: ServerSettings, membership: Membership) -> None:
@@ -79,7 +101,14 @@ async def run_gateway(settings: ServerSettings, membership: Membership) -> None:
     name = f"{membership.name[:32]}-{secrets.token_hex(3)}"
     async with (
         _joined(membership, name) as (store, broker),
-        gateway(name, settings, store, broker) as running,
+        gateway(
+            name,
+            settings,
+            store,
+            broker,
+            partial(_shared, membership, settings),
+            broker_for(membership.servers, f"{name} operators", membership.login),
+        ) as running,
         _health(membership, running.metrics, lambda: running.reception.hindrance),
     ):
         stop = asyncio.Event()
@@ -90,7 +119,14 @@ async def run_gateway(settings: ServerSettings, membership: Membership) -> None:
         scheme = "http" if settings.tls_cert is None else "https"
         root = settings.root_path.rstrip("/")
         url = f"{scheme}://{in_url(host)}:{running.port}{root and f'{root}/'}"
-        log.info("open", url=url, gateway=name)
+        private = private_url(settings, running.private_port)
+        log.info("open", url=url, gateway=name, private=private)
+        token = await running.kept.one_time.first_link()
+        if token is not None:
+            log.info(
+                "no operator yet: this link makes the first one, once, within 10 minutes",
+                url=f"{private}/console#first={token}",
+            )
         waiting = asyncio.create_task(stop.wait())
         either: list[asyncio.Future[Any]] = [waiting, running.ended]
         await asyncio.wait(either, return_when=asyncio.FIRST_COMPLETED)
@@ -107,9 +143,21 @@ async def _joined(membership: Membership, name: str) -> AsyncIterator[tuple[SqlS
     """
     async with (
         open_store(membership.location, zone=f"process {name}", idle_ms=IDLE_MS) as store,
-        connected(membership.servers, name) as broker,
+        connected(membership.servers, name, membership.login) as broker,
     ):
         yield store, broker
+
+
+@asynccontextmanager
+async def _shared(
+    membership: Membership, settings: ServerSettings, metrics: Metrics
+) -> AsyncIterator[Kept]:
+    """The accounts, the audit and all else that the processes of a cluster share."""
+    async with (
+        open_store(membership.location, idle_ms=IDLE_MS) as store,
+        kept_in(store, settings, metrics) as kept,
+    ):
+        yield kept
 
 
 @asynccontextmanager

@@ -4,17 +4,17 @@ from collections.abc import Sequence
 from http import HTTPStatus
 from typing import Annotated, Any, Final
 
-from fastapi import APIRouter, FastAPI, Query, Request
+from fastapi import APIRouter, FastAPI, Request
 from fastapi.responses import JSONResponse
 from pydantic import Discriminator, Tag
+from starlette.routing import Match
 
-from esplanade.protocol.commands import NO_NUL, Answer, Command, Commands, full_id
+from esplanade.protocol.commands import Answer, Command, Commands, full_id
 from esplanade.server.accounts.rights import Right
-from esplanade.server.audit.log import MOST_ROWS, Filter
 from esplanade.server.console import questions
 from esplanade.server.console.accounts_api import router as accounts
 from esplanade.server.console.admission_api import router as admission
-from esplanade.server.console.audit_api import router as verifying
+from esplanade.server.console.audit_api import router as audits
 from esplanade.server.console.auth_api import router as auth
 from esplanade.server.console.gate import Gate
 from esplanade.server.console.live_api import router as live
@@ -47,21 +47,34 @@ OneOrList = Annotated[
 ]
 
 
-Moment = Annotated[int | None, Query(ge=0, lt=2**62, description="Microseconds since 1970.")]
-Word = Annotated[str | None, Query(max_length=200, pattern=NO_NUL)]
-
-
 router = APIRouter(prefix=PREFIX, route_class=Guarded, responses=REFUSALS)
 
 
-def add_api(app: FastAPI, gate: Gate) -> None:
+# Paths of the live views below an actor's go before the actor's own.
+OF_ZONE: Final = (live, traces, sockets, zones, router, kept, people)
+"""The paths about one zone."""
+OF_WORLD: Final = (auth, accounts, admission, audits)
+"""The paths about accounts, who may come in, and the audit: they need no zone that runs."""
+
+
+def add_api(app: FastAPI, gate: Gate, routers: Sequence[APIRouter] = (*OF_ZONE, *OF_WORLD)) -> None:
     """Let an application answer operators."""
     app.state.gate = gate
-    # Paths of the live views below an actor's go before the actor's own.
-    of_zone = live, traces, sockets, zones, router, kept, people
-    for each in (*of_zone, auth, accounts, admission, verifying):
+    for each in routers:
         app.include_router(each)
     add_refusals(app)
+
+
+def is_about_zone(path: str) -> bool:
+    """Whether a path of the interface is about one zone, if none of a zone's name stands in it.
+
+    The list of all zones is about none.
+    """
+    scope = {"type": "http", "method": "GET", "path": path, "root_path": "", "headers": []}
+    routes = [route for each in (*OF_WORLD, zones) for route in each.routes]
+    return path.startswith(f"{PREFIX}/") and all(
+        route.matches(scope)[0] is Match.NONE for route in routes
+    )
 
 
 @router.get("/schema")
@@ -121,39 +134,6 @@ async def commands(request: Request, body: OneOrList) -> Answer | list[Answer]:
     except RefusedError as error:
         raise error if isinstance(body, list) else _of_the_one(error) from None
     return answers if isinstance(body, list) else answers[0]
-
-
-@router.get("/audit")
-async def audit(
-    request: Request,
-    since_us: Moment = None,
-    until_us: Moment = None,
-    account: Word = None,
-    command: Word = None,
-    target: Word = None,
-    after: Annotated[
-        str | None, Query(pattern=r"^\d{1,18}-\d{1,18}$", description="`next` of the page before.")
-    ] = None,
-    limit: Annotated[int, Query(ge=1, le=MOST_ROWS)] = 100,
-) -> dict[str, Any]:
-    """A page of the audit, the newest row first."""
-    may(request, Right.AUDIT)
-    wanted = Filter(
-        since_us=since_us, until_us=until_us, account=account, command=command, target=target
-    )
-    cursor = None
-    if after is not None:
-        at_us, _, row = after.partition("-")
-        cursor = int(at_us), int(row)
-    page = await gate_of(request).audit.page(wanted, after=cursor, limit=limit)
-    rows = [{name: getattr(row, name) for name in _SHOWN} for row in page.rows]
-    return {"rows": rows, "next": None if page.next is None else f"{page.next[0]}-{page.next[1]}"}
-
-
-_SHOWN: Final = (
-    *("id", "writer", "seq", "at_us", "tick", "command", "account", "role", "address", "target"),
-    *("outcome", "refers_to", "body", "person", "note", "detail", "hash"),
-)
 
 
 def _id(text: str) -> str:

@@ -1,12 +1,15 @@
 """The gate between operators' requests and the zones: the way to the zones' event loop."""
 
 import asyncio
-from collections.abc import Callable, Coroutine, Mapping
+from collections.abc import Awaitable, Callable, Coroutine, Mapping
 from copy import copy
 from dataclasses import dataclass
 from http import HTTPStatus
 from typing import Any, Final, NamedTuple, TypeVar
 
+from pydantic import BaseModel
+
+from esplanade.server.accounts.identity import Identity
 from esplanade.server.console.brakes import Brakes
 from esplanade.server.console.callers import Callers
 from esplanade.server.console.console import Console
@@ -21,6 +24,20 @@ MOST_UNDER_WAY: Final = 64
 
 def _no_link(host: str) -> str:
     raise RefusedError.of("busy", f"the port for people is not open yet, at {host} or elsewhere")
+
+
+class ZoneFacts(BaseModel):
+    """A zone: all other paths are about it behind `/api/v1/zones/NAME`."""
+
+    name: str
+    """Empty for a zone that is the whole world, whose paths name none."""
+    scene: str
+    people: int
+    actors: int
+
+
+Elsewhere = Callable[[Identity], Awaitable[list[ZoneFacts]]]
+"""Tells of the zones of a world to an operator, that which newcomers enter first."""
 
 
 class Operated(NamedTuple):
@@ -56,6 +73,10 @@ class Gate:
         """Whether browsers may send cookies of this port over encrypted connections only."""
         self.people_url = people_url
         """The address of people's port, as seen by whoever has reached this one by a name."""
+        self.first = ""
+        """The name of the zone that newcomers enter, where none of the zones is in this process."""
+        self.elsewhere: Elsewhere | None = None
+        """Tells of the zones of a world whose zones are in other processes."""
         self.zones: Mapping[str, Operated] = {}
         """The zones by their names, that which newcomers enter first; none until the world is
         built, and again when it ends."""
@@ -85,7 +106,8 @@ class Gate:
     @property
     def name(self) -> str:
         """The name of the zone; empty for one that is the whole world, and while there is none."""
-        return next(iter(self._whole.zones), "") if self._name is None else self._name
+        first = next(iter(self._whole.zones), self._whole.first)
+        return first if self._name is None else self._name
 
     @property
     def console(self) -> Console | None:

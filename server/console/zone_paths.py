@@ -26,8 +26,15 @@ class ZonePaths:
             found = _OF_ZONE.fullmatch(scope["path"])
             if found is not None:
                 path = (found["before"] or "") + found["rest"]
-                scope = {**scope, "path": path, "raw_path": path.encode(), _ZONE: found["zone"]}
+                scope = about_zone(
+                    {**scope, "path": path, "raw_path": path.encode()}, found["zone"]
+                )
         await self._app(scope, receive, send)
+
+
+def about_zone(scope: Mapping[str, Any], zone: str) -> dict[str, Any]:
+    """The scope of a request, as one about that zone."""
+    return {**scope, _ZONE: zone}
 
 
 def zone_of(scope: Mapping[str, Any]) -> str | None:

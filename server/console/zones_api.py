@@ -5,19 +5,10 @@ from pydantic import BaseModel
 
 from esplanade.server.accounts.rights import Right
 from esplanade.server.console.console import Console
+from esplanade.server.console.gate import ZoneFacts
 from esplanade.server.console.routing import PREFIX, REFUSALS, Guarded, gate_of, may
 
 router = APIRouter(prefix=PREFIX, route_class=Guarded, responses=REFUSALS)
-
-
-class ZoneFacts(BaseModel):
-    """A zone: all other paths are about it behind `/api/v1/zones/NAME`."""
-
-    name: str
-    """Empty for a zone that is the whole world, whose paths name none."""
-    scene: str
-    people: int
-    actors: int
 
 
 class Zones(BaseModel):
@@ -31,8 +22,10 @@ class Zones(BaseModel):
 @router.get("/zones")
 async def zones(request: Request) -> Zones:
     """All zones of the world, with the people and actors in each at this moment."""
-    may(request, Right.WATCH)
+    identity = may(request, Right.WATCH)
     gate = gate_of(request)
+    if gate.elsewhere is not None:
+        return Zones(here=gate.name, zones=await gate.elsewhere(identity))
 
     async def count(_: Console) -> list[ZoneFacts]:
         found = []

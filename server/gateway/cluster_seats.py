@@ -27,7 +27,7 @@ class ClusterSeats:
     Raises
     ------
     ProtocolError
-        (in `take` and `resume`) The database does not answer; one may come again.
+        (in `take`, `resume` and `has`) The database does not answer; one may come again.
     """
 
     def __init__(self, store: Store, gateway: str) -> None:
@@ -48,6 +48,10 @@ class ClusterSeats:
     async def resume(self, token: str, keep_us: int) -> tuple[ClusterSeat, str] | None:
         """Take a seat again; returns it with its next token, or None if it is gone."""
         return await self._certain(partial(_resume, token, self._gateway, keep_us))
+
+    async def has(self, token: str, keep_us: int) -> bool:
+        """Whether a token takes a seat."""
+        return await self._certain(partial(_has, token, keep_us))
 
     async def leave(self, person: int, generation: int) -> None:
         """Give up a seat for which there was no room after all."""
@@ -112,6 +116,10 @@ def _resume(
     token: str, gateway: str, keep_us: int, connection: Any
 ) -> tuple[ClusterSeat, str] | None:
     return seats.resume(connection, token, gateway, keep_us)
+
+
+def _has(token: str, keep_us: int, connection: Any) -> bool:
+    return seats.has(connection, token, keep_us)
 
 
 def _leave(person: int, generation: int, connection: Any) -> None:

@@ -2,8 +2,8 @@
 
 import asyncio
 import socket
-from collections.abc import AsyncIterator
-from contextlib import AsyncExitStack, asynccontextmanager
+from collections.abc import AsyncIterator, Callable
+from contextlib import AbstractAsyncContextManager, AsyncExitStack, asynccontextmanager
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -15,12 +15,16 @@ from esplanade.server.assets import Assets
 from esplanade.server.cluster.ownership import ownerships
 from esplanade.server.cluster.processes import GATEWAY
 from esplanade.server.cluster.world_rows import world_kept
+from esplanade.server.gateway.operators_port import ClusterZones, operators_port
 from esplanade.server.gateway.reception import Reception
 from esplanade.server.heartbeat import Heartbeat
+from esplanade.server.kept import Kept
+from esplanade.server.link.broker import Connecting
 from esplanade.server.link.process_metrics import process_metrics
 from esplanade.server.link.subjects import Subjects
 from esplanade.server.metrics import Metrics
 from esplanade.server.net.descriptors import places_for_people
+from esplanade.server.net.entrance import Entrance
 from esplanade.server.net.listener import Listener, connections_wanted
 from esplanade.server.net.listening import bound_sockets
 from esplanade.server.net.tls import Tls
@@ -33,6 +37,9 @@ class RunningGateway:
     """A gateway that people can reach."""
 
     port: int
+    private_port: int
+    """The port for operators."""
+    kept: Kept
     reception: Reception
     metrics: Metrics
     ended: "asyncio.Future[None]"
@@ -45,11 +52,14 @@ async def gateway(
     settings: ServerSettings,
     store: Store,
     broker: Client,
+    shared: Callable[[Metrics], AbstractAsyncContextManager[Kept]],
+    broker_of: Callable[[], Connecting],
     assets: Assets | None = None,
 ) -> AsyncIterator[RunningGateway]:
     """Run a gateway; on leaving, everyone is told goodbye and may come back at another one.
 
-    `name` is one that no other process has or gets.
+    `name` is one that no other process has or gets. `store` is that of this process alone, `shared`
+    opens what all processes share; `broker_of` connects to the broker, for operators.
 
     Raises
     ------
@@ -69,15 +79,29 @@ async def gateway(
         sockets = await bound_sockets(settings.host, settings.port)
         for each in sockets:
             stack.callback(each.close)
-        port = _port_of(sockets)
+        port, subjects = _port_of(sockets), Subjects(world.subject)
+        kept = await stack.enter_async_context(shared(metrics))
         reception = Reception(
-            name, world.start, store, broker, Subjects(world.subject), settings, metrics
+            name,
+            world.start,
+            store,
+            broker,
+            subjects,
+            settings,
+            metrics,
+            kept,
+            Entrance(settings, kept, metrics),
+        )
+        assets = assets or Assets.load()
+        zones_of = ClusterZones(name, world.start, kept.store, subjects, broker_of)
+        private = await stack.enter_async_context(
+            operators_port(settings, kept, metrics, assets, _Ready(reception), zones_of, port, tls)
         )
         address = settings.public_url or f"port {port}"
         heartbeat = Heartbeat(store, name, GATEWAY, address, lambda: reception.people)
         await heartbeat.begin()
         stack.push_async_callback(heartbeat.end)
-        listener = Listener(reception, assets or Assets.load(), settings, metrics, places)
+        listener = Listener(reception, assets, settings, metrics, places)
         await stack.enter_async_context(listener.listening(sockets, tls))
         ended: asyncio.Future[None] = asyncio.get_running_loop().create_future()
         for work in (reception.run(), heartbeat.run()):
@@ -85,7 +109,17 @@ async def gateway(
             task.add_done_callback(partial(_end, ended))
             stack.push_async_callback(_cancelled, task)
         stack.push_async_callback(reception.close)
-        yield RunningGateway(port, reception, metrics, ended)
+        yield RunningGateway(port, private, kept, reception, metrics, ended)
+
+
+class _Ready:
+    """Tells operators' port whether people may come in."""
+
+    def __init__(self, reception: Reception) -> None:
+        self._reception = reception
+
+    def hindrance(self) -> str | None:
+        return self._reception.hindrance
 
 
 def _end(ended: "asyncio.Future[None]", task: "asyncio.Task[None]") -> None:

@@ -23,5 +23,9 @@ class Occupant:
     """Whether the client has been welcomed to any zone on this connection."""
     moves: bool = False
     """Whether the client has last asked to walk."""
+    mutes: bool = False
+    """Whether the client has said whom it does not want to hear."""
+    told: list[bytes] = field(default_factory=list)
+    """Frames from the host that wait until the client has been welcomed to its zone."""
     lines: list[str] = field(default_factory=list)
     """Lines of chat that are said once the client has been welcomed."""

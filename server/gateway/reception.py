@@ -7,9 +7,11 @@ from typing import Any, Final
 
 import structlog
 from nats.aio.client import Client
+from nats.aio.msg import Msg
 
 from esplanade.protocol import ByeCode, CloseCode, ErrorCode, ProtocolError
 from esplanade.protocol.messages import Bye, Error, Hello
+from esplanade.server.accounts.identity import Identity, digest_of
 from esplanade.server.cluster.person_record import PersonRecord, RecordError, decode_record
 from esplanade.server.cluster.seats import ClusterSeat
 from esplanade.server.gateway.cluster_seats import ClusterSeats
@@ -17,11 +19,22 @@ from esplanade.server.gateway.occupant import Occupant
 from esplanade.server.gateway.views import Views, ZonesAwayError
 from esplanade.server.gateway.zone_view import ZoneView
 from esplanade.server.gateway.zone_wishes import ZoneWishes
+from esplanade.server.kept import Kept
+from esplanade.server.link.hints import MODERATION
 from esplanade.server.link.subjects import Subjects
 from esplanade.server.metrics import Metrics
+from esplanade.server.moderation.bans import Ban
+from esplanade.server.moderation.sharing import SharedModeration
 from esplanade.server.net import frames
+from esplanade.server.net.banned import check_ban, farewell_of, is_banned, only
+from esplanade.server.net.entrance import Entrance
 from esplanade.server.net.names import ReservedNameError, check_reserved, like
-from esplanade.server.net.operator_keys import SERVICE, OperatorKeys, TooManyKeysError
+from esplanade.server.net.operator_keys import (
+    SERVICE,
+    OperatorKeys,
+    TooManyKeysError,
+    operator_of,
+)
 from esplanade.server.net.session import Session
 from esplanade.server.net.sockets.reading import Reading
 from esplanade.server.settings import ServerSettings
@@ -58,8 +71,11 @@ class Reception:
         subjects: Subjects,
         settings: ServerSettings,
         metrics: Metrics,
+        kept: Kept,
+        entrance: Entrance,
     ) -> None:
-        """`gateway` is the name of this process, `start` the zone that newcomers enter."""
+        """`gateway` is the name of this process, `start` the zone that newcomers enter. `store` is
+        that of this process alone, `kept` what all processes share."""
         self.views = Views(
             gateway, store, broker, subjects, settings, metrics, self.depart, self.confirm
         )
@@ -70,6 +86,10 @@ class Reception:
         self._settings = settings
         self._metrics = metrics
         self._seats = ClusterSeats(store, gateway)
+        self._directory = kept.directory
+        self._moderated = kept.moderation
+        self._moderation = SharedModeration(kept.moderation)
+        self._entrance = entrance
         self._keys = OperatorKeys(settings.operator_key.get_secret_value(), metrics)
         self._places: dict[Session, tuple[ZoneView, Occupant]] = {}
         self._tasks: set[asyncio.Task[Any]] = set()
@@ -141,6 +161,19 @@ class Reception:
         """
         if self._closing:
             raise ZonesAwayError(self._start)
+        self._check_ban(session, hello)
+        session.admitted = await self._entrance.check(
+            hello.admission, session.address, session.identity, await self._has_seat(hello)
+        )
+        session.operator = session.admitted.operator
+        try:
+            await self._seat(session, hello)
+        except ProtocolError:
+            await self._entrance.turn_away(session.admitted)
+            raise
+
+    async def _seat(self, session: Session, hello: Hello) -> None:
+        """Give somebody who may come in a seat, and a place in its zone."""
         self._check_key(session, hello.operator)
         resumed = False
         found: tuple[ClusterSeat, str] | None = None
@@ -154,9 +187,12 @@ class Reception:
         session.name, session.resumes = seat.name, resumed
         now_s = asyncio.get_running_loop().time()
         record = _record_of(seat)
+        if resumed and record.account and session.operator is None:
+            session.operator = await self._again(record)
         who = Occupant(seat.person, seat.generation, session, record, resumed, now_s)
         try:
             view = await self.views.opened(seat.zone)
+            self._check_ban(session, hello)  # one may have come to hold meanwhile
         except ProtocolError:
             if not resumed:
                 await self._seats.leave(seat.person, seat.generation)
@@ -169,6 +205,7 @@ class Reception:
 
     def depart(self, session: Session, comes_back: bool) -> None:
         """Let go of a session that has ended."""
+        self._entrance.end(session.admitted)
         place = self._places.pop(session, None)
         if place is not None:
             view, who = place
@@ -197,6 +234,8 @@ class Reception:
             place=hello.at,
             anywhere=session.is_operator,
             operator=session.is_operator,
+            account=_account_of(session),
+            wished=session.wished,
         )
         return await self._seats.take(self._start, like(hello.name), record)
 
@@ -213,11 +252,47 @@ class Reception:
             view.replaced(other)
         return True
 
+    def _check_ban(self, session: Session, hello: Hello) -> None:
+        moderated = self._moderated
+        now_us = moderated.now_us()
+        check_ban(moderated.bans, now_us, hello.name, session.address, hello.resume)
+
+    async def _has_seat(self, hello: Hello) -> bool:
+        """Whether somebody comes back to a seat; only those are asked about whom it concerns."""
+        if not hello.resume or not (self._settings.closed or hello.admission is not None):
+            return False
+        keep_us = round(self._settings.resume_seconds * 1e6)
+        return await self._seats.has(hello.resume, keep_us)
+
+    async def _again(self, record: PersonRecord) -> Identity | None:
+        """The operator who comes back to an avatar, with the rights that the account has now."""
+        operator = operator_of(record.account, record.address, moves_doors=record.operator)
+        try:
+            return None if operator is None else await self._directory.again(operator)
+        except StoreError as error:
+            log.warning("an operator comes back without rights", why=str(error))
+            return None
+
+    def _turn_out(self, ban: Ban, person: int | None) -> int:
+        """Send those of this gateway out whom a ban is of, in whatever zone they are."""
+        alone, now_us = only(ban), self._moderated.now_us()
+        found = []
+        for session, (_, who) in self._places.items():
+            names = session.wished, session.name
+            digests = [] if not session.token else [digest_of(session.token)]
+            is_meant = is_banned(alone, now_us, names, session.address, digests)
+            if is_meant or who.person == person:
+                found.append(session)
+        for session in found:
+            self.depart(session, comes_back=False)
+            session.dismiss(farewell_of(ban), CloseCode.BANNED, ByeCode.BANNED.value)
+        return len(found)
+
     def _check_key(self, session: Session, key: str | None) -> None:
         now_s = asyncio.get_running_loop().time()
         try:
             if self._keys.opens(key, session.address, now_s):
-                session.operator = SERVICE
+                session.operator = session.operator or SERVICE
         except TooManyKeysError as error:
             session.fault_at_welcome = ProtocolError(ErrorCode.KEY_UNREAD, str(error), None)
 
@@ -228,8 +303,11 @@ class Reception:
         answers = await self._broker.subscribe(
             self._subjects.gateway(self._gateway), cb=self.views.answered
         )
+        hints = await self._broker.subscribe(self._subjects.control, cb=self._hear)
         self._begin(self._seats.run())
         self._begin(self._look())
+        self._begin(self._moderation.run())
+        self._moderated.turns_out.append(self._turn_out)
         loop = asyncio.get_running_loop()
         due = loop.time()
         try:
@@ -240,8 +318,14 @@ class Reception:
                     self._reading.poll()
                 await self.views.send()
         finally:
+            self._moderated.turns_out.remove(self._turn_out)
             if not self._broker.is_closed:
                 await answers.unsubscribe()
+                await hints.unsubscribe()
+
+    async def _hear(self, message: Msg) -> None:
+        if message.data == MODERATION:
+            self._moderation.hear()
 
     async def close(self) -> None:
         """Say goodbye to everyone, who may come back at another gateway, and stop.
@@ -329,6 +413,12 @@ class Reception:
         self._tasks.discard(task)
         if not task.cancelled() and (error := task.exception()) is not None:
             log.error("a part of the gateway has failed", exc_info=error)
+
+
+def _account_of(session: Session) -> str:
+    """The account of an operator who walks in as oneself; empty for everybody else."""
+    operator = session.operator
+    return "" if operator is None or operator.via != "pass" else operator.account or ""
 
 
 def _record_of(seat: ClusterSeat) -> PersonRecord:

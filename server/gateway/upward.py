@@ -1,7 +1,7 @@
 """Inputs of a gateway's people that wait for the next batch to the host of a zone."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from typing import Final
 
@@ -47,6 +47,7 @@ class Upward:
         self._watched: dict[int, tuple[int, int, int | None]] = {}
         self._doors: dict[str, tuple[int, int, str, bool]] = {}
         self._lines: list[tuple[int, int, str]] = []
+        self._muted: dict[int, tuple[int, int, list[int]]] = {}
         self.left_out = 0
         """Lines that were given up, since the zone took none of those before."""
 
@@ -96,6 +97,10 @@ class Upward:
         if len(self._doors) < MOST_WAITING:
             self._doors[name] = (who.person, who.generation, name, is_open)
 
+    def mute(self, who: Occupant, muted: Collection[int]) -> None:
+        """Say whom somebody does not want to hear, which goes with the seat wherever that goes."""
+        self._muted[who.person] = (who.person, who.generation, sorted(muted))
+
     def batch(self, epoch: int, held: list[tuple[int, int]], now_s: float) -> Batch | None:
         """Everything since the last batch, for the owner of that epoch, with whom we serve.
 
@@ -106,7 +111,7 @@ class Upward:
             wish.sent_s = now_s
             wish.tries += 1
         waiting = (self._held, self._departed, self._stood, self._watched, self._doors, self._lines)
-        if not held and not due and not any(waiting):
+        if not held and not due and not self._muted and not any(waiting):
             return None
         self._number += 1
         batch = Batch(
@@ -121,9 +126,10 @@ class Upward:
             list(self._watched.values()),
             list(self._doors.values()),
             self._stood,
+            list(self._muted.values()),
         )
         self._held, self._departed, self._lines, self._stood = [], [], [], []
-        self._watched, self._doors = {}, {}
+        self._watched, self._doors, self._muted = {}, {}, {}
         self._wishes = {
             person: wish for person, wish in self._wishes.items() if wish.tries < MOST_TRIES
         }

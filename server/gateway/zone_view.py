@@ -44,6 +44,9 @@ KNOWN_S: Final = 0.7
 HOLD_S: Final = 0.5
 """A zone is told of everyone whom this gateway serves there so often."""
 
+MOST_TOLD: Final = 16
+"""Frames of a host for somebody who is not welcomed yet; further ones are left out."""
+
 log = structlog.get_logger(__name__)
 
 
@@ -101,6 +104,8 @@ class ZoneView:
         self._silence = SilenceNotices(self.sessions, self.server_time)
         self._detached: list[int] = []
         self._epoch = 0
+        self._heard: int | None = None
+        """The tick of the owner's newest frame, -1 while it is a new owner; None before all."""
         self._tick = 0
         self._shift = 0
         self._held_s = -math.inf
@@ -213,16 +218,17 @@ class ZoneView:
             log.info("another owner", zone=self.zone, epoch=key.epoch)
             self._epoch = key.epoch
             self._clock.begin()
+            self._heard = None if self._heard is None else -1
             # Ticks never fall for a client, whatever a new owner has found.
             self._shift = max(0, self._tick + 1 - frame.tick) if self._tick else 0
-        self._clock.take(frame.tick, now_s)
+        self._clock.take(frame.tick, now_s, frame.rate)
         if key.is_whole:
-            frame = self.known.difference(frame)
+            frame = self.known.difference(frame, heard=self._heard)
             self._held_s = -math.inf  # the zone may have taken everyone here for lost
         else:
             self._upward.acknowledge(frame.acks)
         self.known.take(frame)
-        self._tick = frame.tick + self._shift
+        self._heard, self._tick = frame.tick, frame.tick + self._shift
         self._silence.heard()
         self._take_tickets(frame)
         attached = self._welcome(frame, now_s)
@@ -301,6 +307,9 @@ class ZoneView:
         else:
             self._metrics.joins.labels("travelled").inc()
         who.is_in = True
+        for told in who.told:
+            session.outbox.post(told)
+        who.told.clear()
         for line in who.lines:
             self._upward.say(who, line)
         who.lines.clear()
@@ -335,10 +344,15 @@ class ZoneView:
         who = self.occupants.get(answer.person)
         if who is None or who.generation != answer.generation:
             return
-        if answer.frame:
-            who.session.outbox.post(answer.frame)
-        else:
+        if answer.close is not None:
+            self.hand_over(who)
+            who.session.dismiss(answer.frame, answer.close, answer.reason)
+        elif not answer.frame:
             self.replaced(who)
+        elif who.person in self.sessions:
+            who.session.outbox.post(answer.frame)
+        elif len(who.told) < MOST_TOLD:
+            who.told.append(answer.frame)
 
     # --- up -----------------------------------------------------------------------------------
 
@@ -353,6 +367,9 @@ class ZoneView:
         if now_s - self._held_s >= HOLD_S:
             self._held_s = now_s
             held = [(who.person, who.generation) for who in self.occupants.values()]
+            for who in self.occupants.values():
+                if who.mutes:  # the batch that has said so before may be lost
+                    self._upward.mute(who, self._lines.muted_by(who.person))
         batch = self._upward.batch(self._epoch, held, now_s)
         if batch is None:
             return

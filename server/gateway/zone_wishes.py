@@ -117,7 +117,12 @@ class ZoneWishes:
     def mute(self, session: Session, wish: MutePerson) -> None:
         """Send no lines of somebody to the session any more, or send them again."""
         who = self._of(session)
-        if who is not None and not self._lines.mute(who.person, wish.id, muted=wish.muted):
+        if who is None:
+            return
+        if self._lines.mute(who.person, wish.id, muted=wish.muted):
+            who.mutes = True
+            self._upward.mute(who, self._lines.muted_by(who.person))
+        else:
             text = f"you have muted {MOST_MUTED} people, no more can be at once"
             session.tell(ProtocolError(ErrorCode.FLOODING, text, None))
 

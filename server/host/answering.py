@@ -7,7 +7,7 @@ import structlog
 from nats.aio.client import Client
 from nats.errors import Error as NatsError
 
-from esplanade.protocol import ProtocolError
+from esplanade.protocol import CloseCode, ProtocolError
 from esplanade.protocol.messages import Error, FromServer
 from esplanade.server.link.answers import Answer, encode_answers
 from esplanade.server.link.subjects import Subjects
@@ -38,6 +38,22 @@ class Answering:
         """Tell somebody of a fault in what they have sent."""
         error = Error(error=fault.code, text=fault.text, arguments=fault.arguments)
         self.post(gateway, person, generation, error)
+
+    def pass_on(self, gateway: str, person: int, generation: int, frame: bytes) -> None:
+        """Send somebody a frame."""
+        self._put(gateway, Answer(person, generation, frame))
+
+    def dismiss(
+        self,
+        gateway: str,
+        person: int,
+        generation: int,
+        frame: bytes,
+        close: CloseCode,
+        reason: str,
+    ) -> None:
+        """End the connection of somebody, with a last frame."""
+        self._put(gateway, Answer(person, generation, frame, close, reason))
 
     def replaced(self, gateway: str, person: int, generation: int) -> None:
         """Let a gateway know that somebody has taken a seat since."""

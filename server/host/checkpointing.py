@@ -10,6 +10,7 @@ import structlog
 
 from esplanade.server.checkpoint.errors import CheckpointError
 from esplanade.server.checkpoint.format import pack, unpack
+from esplanade.server.checkpoint.parts import Parts
 from esplanade.server.cluster.tenure import Claim
 from esplanade.server.cluster.zone_rows import ZoneCheckpoint, keep_checkpoint
 from esplanade.server.store.store import Store, StoreError
@@ -27,12 +28,20 @@ class Checkpointing:
     """Writes what a zone is, off the tick: it is copied between two ticks, and packed in a thread.
 
     `digest` is that of the scene: a checkpoint of another scene tells only where people stand.
+    `operated` are the parts of what operators have set.
     """
 
     def __init__(
-        self, world: Zone, store: Store, claim: Claim, digest: str, thread: Executor
+        self,
+        world: Zone,
+        operated: Parts,
+        store: Store,
+        claim: Claim,
+        digest: str,
+        thread: Executor,
     ) -> None:
         self._world = world
+        self._operated = operated
         self._store = store
         self._claim = claim
         self._digest = digest
@@ -70,6 +79,7 @@ class Checkpointing:
             SCENE: self._digest,
             ZONE: self._world.save(),
             NEXT_ID: self._world.state.next_id,
+            **self._operated.save(),
         }
         loop = asyncio.get_running_loop()
         packed = await loop.run_in_executor(self._thread, pack, parts)

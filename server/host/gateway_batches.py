@@ -11,18 +11,21 @@ import structlog
 from nats.aio.msg import Msg
 
 from esplanade.protocol import ProtocolError
-from esplanade.protocol.messages import WalkTo
+from esplanade.protocol.messages import SetDoor, WalkTo
 from esplanade.server.host.answering import Answering
+from esplanade.server.host.guests import HostedGuest
 from esplanade.server.host.hosted_people import HostedPeople
 from esplanade.server.link.batches import Batch, BatchError, decode_batch
+from esplanade.server.net.door_commands import DoorCommands
 from esplanade.server.net.fair_queue import Asker
 from esplanade.server.net.pending_inputs import PendingInputs
 from esplanade.server.net.route_requests import RouteRequests
-from esplanade.server.world.inputs import MoveDoor, Say, Watch
+from esplanade.server.net.waiting_lines import WaitingLines
+from esplanade.server.world.inputs import Say, Watch
 from esplanade.server.world.zone import Zone
 
-MOST_LINES: Final = 4096
-"""Lines of chat that wait for a tick; further ones are not heard."""
+MOST_WALKS: Final = 4096
+"""Persons whose latest walk to a point is known."""
 MOST_GATEWAYS: Final = 1024
 """The most gateways of which the number of the newest batch is known."""
 
@@ -40,7 +43,10 @@ class GatewayBatches:
         pending: PendingInputs,
         answering: Answering,
         epoch: int,
+        lines: WaitingLines[HostedGuest],
+        doors: DoorCommands,
     ) -> None:
+        """`lines` holds what is said to the rules of chat; `doors` moves doors for operators."""
         self._world = world
         self._people = people
         self._routes = routes
@@ -48,11 +54,11 @@ class GatewayBatches:
         self._answering = answering
         self._epoch = epoch
         self._numbers: dict[str, int] = {}
-        self._lines: list[Say] = []
+        self._lines = lines
+        self._doors = doors
         self._walks: dict[int, tuple[int, int]] = {}
         self.refused: Counter[str] = Counter()
-        """Batches and inputs that had no effect, by why: `bad`, `epoch`, `late`, `generation`,
-        `lines`."""
+        """Batches and inputs that had no effect, by why: `bad`, `epoch`, `late`, `generation`."""
 
     def take_message(self, message: Msg, now_s: float) -> None:
         """Take in the bytes of a batch."""
@@ -84,8 +90,7 @@ class GatewayBatches:
 
     def lines(self) -> list[Say]:
         """The lines of chat that have come since the last call."""
-        lines, self._lines = self._lines, []
-        return lines
+        return self._lines.drain()
 
     def _take_held(self, batch: Batch, now_s: float) -> None:
         """Take in whom a gateway serves."""
@@ -107,8 +112,9 @@ class GatewayBatches:
         wishes = {}
         fields = (batch.movements[name].tolist() for name in batch.movements.dtype.names or ())
         for person, generation, seq, direction_rad, speed_mps in zip(*fields, strict=True):
-            if self._steers(person, generation) and person not in self._people.leaving:
+            if self._steers(person, generation) and not self._people.is_led(person):
                 wishes[person] = (seq, direction_rad, speed_mps)
+                self._people.guests.last_seqs[person] = seq
         if wishes:
             self._pending.steer(wishes)
             self._routes.forget_all(wishes.keys())
@@ -123,16 +129,20 @@ class GatewayBatches:
     def _take_words(self, batch: Batch) -> None:
         """Take in what people say, whose plans they watch, and which doors they move."""
         for person, generation, text in batch.lines:
-            if len(self._lines) >= MOST_LINES:
-                self.refused["lines"] += 1
-            elif self._steers(person, generation):
-                self._lines.append(Say(person, text))
+            guest = self._people.guests.get(person)
+            if self._steers(person, generation) and guest is not None:
+                self._lines.put(guest, text)
+        for person, generation, muted in batch.muted:
+            if self._steers(person, generation):
+                self._people.mute(person, tuple(muted))
         for person, generation, actor in batch.watched:
             if self._steers(person, generation):
                 self._pending.watch(Watch(person, actor))
         for person, generation, door, is_open in batch.doors:
-            if self._steers(person, generation) and door in self._world.doors.states():
-                self._pending.move_door(MoveDoor(door, is_open))
+            guest = self._people.guests.get(person)
+            is_here = self._steers(person, generation) and door in self._world.doors.states()
+            if is_here and guest is not None:
+                self._doors.ask(guest, SetDoor(name=door, open=is_open))
 
     def _steers(self, person: int, generation: int) -> bool:
         if self._people.occupations.may_steer(person, generation):
@@ -141,14 +151,15 @@ class GatewayBatches:
         return False
 
     def _walk(self, person: int, generation: int, gateway: str, wish: WalkTo) -> None:
-        if person in self._people.leaving or not self._people.is_known(person):
+        if self._people.is_led(person) or not self._people.is_known(person):
             return
         if self._walks.get(person) == (generation, wish.seq):
             return  # it has come before
-        if len(self._walks) >= MOST_LINES:
+        if len(self._walks) >= MOST_WALKS:
             known = self._people.is_known
             self._walks = {one: walk for one, walk in self._walks.items() if known(one)}
         self._walks[person] = (generation, wish.seq)
+        self._people.guests.last_seqs[person] = wish.seq
         address = self._people.record_of(person).address or str(person)
         try:
             self._routes.ask(Asker(address, person), wish)

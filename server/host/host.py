@@ -10,20 +10,20 @@ from pathlib import Path
 from typing import Any, Final
 
 import structlog
-from nats.aio.client import Client
 from nats.aio.msg import Msg
-from nats.errors import Error as NatsError
 
 from esplanade.server.cluster import ownership
 from esplanade.server.cluster.processes import HOST, processes
 from esplanade.server.cluster.tenure import Claim, Tenure
 from esplanade.server.cluster.world_rows import ClusterWorld, world_kept, write_files
 from esplanade.server.heartbeat import Heartbeat
-from esplanade.server.host.hosted_zone import HostedZone, hosted_zone
+from esplanade.server.host.hosted_zone import HostedZone, HostProcess, hosted_zone
+from esplanade.server.host.operators import HostOperators
 from esplanade.server.host.renewal import Renewal
 from esplanade.server.host.zone_recovery import Found, build
-from esplanade.server.link.subjects import Subjects
+from esplanade.server.link.hints import MODERATION, OWNERSHIPS, hint, hinting
 from esplanade.server.metrics import Metrics
+from esplanade.server.moderation.sharing import SharedModeration
 from esplanade.server.settings import ServerSettings
 from esplanade.server.store.store import Store, StoreError
 from esplanade.server.zones import ZoneToServe, zones_to_serve
@@ -75,8 +75,8 @@ class Host:
         name: str,
         world: HostedWorld,
         wanted: Sequence[str],
-        store: Store,
-        broker: Client,
+        process: HostProcess,
+        operators: HostOperators,
         metrics: Metrics,
         stop: asyncio.Event,
     ) -> None:
@@ -84,9 +84,10 @@ class Host:
         self.name = name
         self._world = world
         self._wanted = list(wanted) or [zone.name for zone in world.zones]
-        self._store = store
-        self._broker = broker
-        self._subjects = Subjects(world.kept.subject)
+        self._process = process
+        self._store, self._broker, self._subjects = process.store, process.broker, process.subjects
+        self._operators = operators
+        self._moderation = SharedModeration(process.kept.moderation)
         self._metrics = metrics
         self._stop = stop
         self._ready = False
@@ -116,6 +117,10 @@ class Host:
         await heartbeat.begin()
         beating = asyncio.create_task(heartbeat.run())
         beating.add_done_callback(lambda _: self._stop.set())
+        looking = asyncio.create_task(self._moderation.run())
+        self._process.kept.moderation.decided.append(
+            hinting(self._broker, self._subjects, MODERATION)
+        )
         hints = await self._broker.subscribe(self._subjects.control, cb=self._hear)
         try:
             while not self._stop.is_set():
@@ -124,6 +129,7 @@ class Host:
                     await self._own(claim)
         finally:
             beating.cancel()
+            looking.cancel()
             if not self._broker.is_closed:
                 await hints.unsubscribe()
             await heartbeat.end()
@@ -180,18 +186,18 @@ class Host:
                 scenes,
                 tenure,
                 renewal,
-                self._store,
-                self._broker,
-                self._subjects,
+                self._process,
                 metrics,
             ) as hosted:
                 self.running = hosted
+                await self._operators.open(claim.zone, claim.epoch, hosted.operated)
                 ending = asyncio.create_task(self._end_when_told(hosted))
                 log.info("open", zone=claim.zone, epoch=claim.epoch, host=self.name)
                 try:
                     await hosted.run()
                 finally:
                     ending.cancel()
+                    await self._operators.close()
         except StoreError as error:
             log.warning("the zone is not run", zone=claim.zone, why=str(error))
             await asyncio.sleep(CLAIM_S)
@@ -227,12 +233,13 @@ class Host:
 
     async def _tell(self) -> None:
         """Let other hosts look at once; whoever does not hear it looks half a second later."""
-        if self._broker.is_connected:
-            with suppress(NatsError):
-                await self._broker.publish(self._subjects.control, b"ownerships")
+        await hint(self._broker, self._subjects, OWNERSHIPS)
 
-    async def _hear(self, _: Msg) -> None:
-        self._hint.set()
+    async def _hear(self, message: Msg) -> None:
+        if message.data == MODERATION:
+            self._moderation.hear()
+        else:
+            self._hint.set()
 
 
 def _write_files(folder: Path, connection: Any) -> Path:

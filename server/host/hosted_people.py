@@ -4,7 +4,7 @@ Who belongs here is what the seats in the database say; a gateway's word for it 
 look.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 
 import structlog
@@ -13,13 +13,21 @@ from esplanade.planning import MovedEnd
 from esplanade.protocol import ErrorCode, ProtocolError
 from esplanade.protocol.messages import Notice, WalkTo
 from esplanade.server.cluster.occupations import Occupations
-from esplanade.server.cluster.person_record import PersonRecord, RecordError, decode_record
+from esplanade.server.cluster.person_record import (
+    PersonRecord,
+    RecordError,
+    decode_record,
+    encode_record,
+)
 from esplanade.server.cluster.seats import ClusterSeat
 from esplanade.server.host.answering import Answering
+from esplanade.server.host.guests import Guests, HostedGuest, Telling
+from esplanade.server.host.host_moderation import HostModeration
 from esplanade.server.host.seat_desk import SeatDesk
 from esplanade.server.net.moved_goals import notice_of, refusal_of
 from esplanade.server.net.pending_inputs import PendingInputs
 from esplanade.server.net.route_requests import RouteRequests
+from esplanade.server.net.walk_outs import WalkOuts
 from esplanade.server.world.frame import Frame
 from esplanade.server.world.inputs import (
     Attach,
@@ -61,12 +69,39 @@ class HostedPeople:
         self._joins: dict[int, Join] = {}
         self._records: dict[int, PersonRecord] = {}
         self._seats: dict[int, ClusterSeat] = {}
+        self._expelled: set[int] = set()
+        """Those who were sent out, and whose seats may be found yet."""
+        self.guests = Guests(
+            world,
+            self.occupations,
+            self.seat_of,
+            self.record_of,
+            Telling(self.occupations, answering),
+        )
+        """Those whose avatars are here, as the parts that look after people know them."""
+        self.moderation: HostModeration | None = None
+        """Looks after them for operators."""
+        self.welcomed: list[Callable[[HostedGuest], None]] = []
+        """Called with each who has come in, or has come back."""
 
     # --- who comes and goes -------------------------------------------------------------------
 
     def is_known(self, person: int) -> bool:
         """Whether somebody has an avatar here, and their seat has been read."""
         return self.occupations.of(person) is not None and person in self._world.state
+
+    @property
+    def walk_outs(self) -> WalkOuts | None:
+        """Those who are being walked out by operators."""
+        return None if self.moderation is None else self.moderation.walk_outs
+
+    def is_walked_out(self, person: int) -> bool:
+        """Whether operators have somebody walk to the way out."""
+        return self.walk_outs is not None and person in self.walk_outs
+
+    def is_led(self, person: int) -> bool:
+        """Whether somebody goes where they are sent, and not where they want."""
+        return person in self.leaving or self.is_walked_out(person)
 
     def look(self) -> None:
         """Read the seats soon, since a gateway says that somebody belongs here."""
@@ -99,6 +134,8 @@ class HostedPeople:
 
     def take_seats(self, found: list[ClusterSeat], now_s: float) -> None:
         """Take in all seats of the zone: those belong here who have one, and nobody else."""
+        self._expelled &= {seat.person for seat in found}
+        found = [seat for seat in found if seat.person not in self._expelled]
         here = {seat.person for seat in found}
         for seat in found:
             known = self.occupations.of(seat.person)
@@ -108,6 +145,8 @@ class HostedPeople:
                     self._end(seat.person)
                     self._pending.come(Detach(seat.person), Attach(seat.person, seat.generation))
             self._seats[seat.person] = seat
+            if seat.person not in self._records:
+                self._records[seat.person] = _record_of(seat)
             is_known = seat.person in self._world.state or seat.person in self._moving
             if not is_known and seat.person not in self._joins:
                 self._join(seat)
@@ -120,12 +159,9 @@ class HostedPeople:
         self._remove(person)
 
     def _join(self, seat: ClusterSeat) -> None:
-        try:
-            record = decode_record(seat.state)
-        except RecordError as error:
-            log.warning("a seat cannot be read", person=seat.person, error=str(error))
-            record = PersonRecord()
-        self._records[seat.person] = record
+        record = self.record_of(seat.person)
+        if record.silent_s and self.moderation is not None:
+            self.moderation.mutes.put(seat.person, record.silent_s)
         self._joins[seat.person] = Join(
             seat.generation, seat.name, record.place, record.anywhere, id=seat.person
         )
@@ -137,6 +173,10 @@ class HostedPeople:
     def _remove(self, person: int) -> None:
         self._pending.come(Leave(person))
         self._joins.pop(person, None)
+        guest = self.guests.known(person)
+        if guest is not None and self.moderation is not None:
+            self.moderation.remember(guest)
+        self.guests.forget(person)
         self._records.pop(person, None)
         self._seats.pop(person, None)
         self.leaving.discard(person)
@@ -148,21 +188,31 @@ class HostedPeople:
 
     # --- the tick -----------------------------------------------------------------------------
 
-    def drain(self, lines: Sequence[Input], now_s: float) -> list[Input]:
-        """Return everything for the next tick, with the lines of chat."""
+    def drain(self, lines: Sequence[Input], now_s: float, *, still: bool = False) -> list[Input]:
+        """Return everything for the next tick, with the lines of chat.
+
+        For a `still` tick, in which nobody moves, movements wait for the next one.
+        """
+        if self.walk_outs is not None:
+            self.walk_outs.check(now_s)
         for person, generation in self.occupations.silent(now_s).items():
             log.info("person lost", person=person, generation=generation)
             self._end(person)
             self._pending.come(Detach(person))
             self._desk.vacate(person, generation)
         joins, self._joins = list(self._joins.values()), {}
-        return self._pending.drain(lines, joins, still=False)
+        return self._pending.drain(lines, joins, still=still)
 
     def told(self, frame: Frame) -> None:
         """Note who has come in with a tick. Whoever has found no room is tried again when the
         seats are read next."""
         for _, person in frame.joined:
             log.info("person here", person=person)
+        for _, person in (*frame.joined, *frame.attached):
+            guest = self.guests.get(person)
+            if guest is not None:
+                for welcome in self.welcomed:
+                    welcome(guest)
 
     def route_found(
         self, person: int, wish: WalkTo, route: Route | None, moved: MovedEnd | None
@@ -172,6 +222,9 @@ class HostedPeople:
         if known is None or known.gateway is None:
             return
         tell = partial(self._answering.tell, known.gateway, person, known.generation)
+        if self.walk_outs is not None and self.is_walked_out(person):
+            self.walk_outs.route_found(person, route)
+            return
         if route is not None:
             self._pending.move(Follow(person, wish.seq, route))
             if moved is not None:
@@ -185,6 +238,19 @@ class HostedPeople:
 
     # --- from zone to zone --------------------------------------------------------------------
 
+    def mute(self, person: int, muted: tuple[int, ...]) -> None:
+        """Note whom somebody does not want to hear, in the seat too; it may come again."""
+        record = self.record_of(person)
+        if person in self._seats and record.muted != muted:
+            self._records[person] = record = record.model_copy(update={"muted": muted})
+            self._desk.keep(person, encode_record(record))
+
+    def expel(self, person: int) -> None:
+        """Send somebody out for good, whoever has taken the seat last."""
+        self._expelled.add(person)
+        self._desk.expel(person)
+        self.gone(person)
+
     def seat_of(self, person: int) -> ClusterSeat | None:
         """The seat of somebody who belongs here, as it was read last."""
         return self._seats.get(person)
@@ -192,6 +258,13 @@ class HostedPeople:
     def record_of(self, person: int) -> PersonRecord:
         """The record of somebody who belongs here."""
         return self._records.get(person, PersonRecord())
+
+    def record_to_go(self, person: int) -> PersonRecord:
+        """The record of somebody as it is to be in the zone to which they go."""
+        record = self.record_of(person)
+        if self.moderation is None:
+            return record
+        return record.model_copy(update={"silent_s": self.moderation.muted_s(person)})
 
     def steered(self) -> set[int]:
         """Those whose clients are there, and who have an avatar."""
@@ -232,3 +305,11 @@ class HostedPeople:
             self._joins[person] = Join(seat.generation, name, at, anywhere=True, id=person)
         else:
             self._remove(person)
+
+
+def _record_of(seat: ClusterSeat) -> PersonRecord:
+    try:
+        return decode_record(seat.state)
+    except RecordError as error:
+        log.warning("a seat cannot be read", person=seat.person, error=str(error))
+        return PersonRecord()

@@ -17,30 +17,42 @@ from esplanade.actors.warming import tables_ahead
 from esplanade.planning import Scene
 from esplanade.server.cluster.ownership import NotOwnerError
 from esplanade.server.cluster.tenure import Tenure
-from esplanade.server.cluster.zone_rows import (
-    keep_description,
-)
+from esplanade.server.cluster.zone_rows import keep_description
+from esplanade.server.commanding import commanding, live_view
+from esplanade.server.console.gate import Operated
+from esplanade.server.console.presets import Presets
 from esplanade.server.host.answering import Answering
 from esplanade.server.host.checkpointing import Checkpointing
 from esplanade.server.host.gateway_batches import GatewayBatches
+from esplanade.server.host.guests import HostedGuest, SeatsOfZone
+from esplanade.server.host.host_moderation import HostModeration
 from esplanade.server.host.hosted_people import HostedPeople
+from esplanade.server.host.operated import CONSOLE, recovered, send_out_the_kicked
+from esplanade.server.host.owned_store import kept_by_owner
 from esplanade.server.host.portals import Portals
 from esplanade.server.host.renewal import Renewal
 from esplanade.server.host.seat_desk import SeatDesk
 from esplanade.server.host.ticking import HostTicker
 from esplanade.server.host.zone_recovery import build, digest_of, found_in
+from esplanade.server.kept import Kept
 from esplanade.server.link.frames_over_nats import FrameSender
 from esplanade.server.link.subjects import Subjects
 from esplanade.server.link.zone_description import ZoneDescription, encode_description, rules_told
+from esplanade.server.live.bulletin import Bulletin
 from esplanade.server.metrics import Metrics
 from esplanade.server.net.actor_planning import ActorPlanning
+from esplanade.server.net.chat_gate import ChatGate
 from esplanade.server.net.ground_work import GroundWork
+from esplanade.server.net.pace_notices import PaceNotices
 from esplanade.server.net.pending_inputs import PendingInputs
 from esplanade.server.net.route_requests import RouteRequests
 from esplanade.server.net.schedule import Schedule
 from esplanade.server.net.search_budget import SearchBudget
+from esplanade.server.net.waiting_lines import WaitingLines
+from esplanade.server.net.walk_outs import WalkOuts
 from esplanade.server.store.store import Store, StoreError
 from esplanade.server.watching import watch_routes, watch_world
+from esplanade.server.world.pace import PaceState
 from esplanade.server.world.zone import Zone
 from esplanade.server.zones import ZoneToServe, check_portals, described_portals
 
@@ -61,6 +73,8 @@ class HostedZone:
     portals: Portals
     checkpoints: Checkpointing
     routes: RouteRequests
+    operated: Operated
+    """The console and the live views, for operators."""
     broker: Client
     subjects: Subjects
 
@@ -125,6 +139,19 @@ class HostedZone:
             self.ticker.stop()
 
 
+@dataclass(frozen=True)
+class HostProcess:
+    """The parts of a host that its zones have, one after the other."""
+
+    store: Store
+    """The database, as this process alone has it."""
+    kept: Kept
+    """Accounts, the audit and all else that the processes of a cluster share."""
+    presets: Presets
+    broker: Client
+    subjects: Subjects
+
+
 @asynccontextmanager
 async def hosted_zone(
     zone: ZoneToServe,
@@ -132,12 +159,12 @@ async def hosted_zone(
     scenes: Mapping[str, Scene],
     tenure: Tenure,
     renewal: Renewal,
-    store: Store,
-    broker: Client,
-    subjects: Subjects,
+    process: HostProcess,
     metrics: Metrics,
 ) -> AsyncIterator[HostedZone]:
     """Build a zone that was claimed, with all that runs it; it does not tick yet.
+
+    `place` is that of the zone among all, whose `scenes` these are.
 
     Raises
     ------
@@ -147,7 +174,8 @@ async def hosted_zone(
         The database does not answer, or the zone is another host's already.
     """
     loop, settings = asyncio.get_running_loop(), zone.settings
-    claim = tenure.claim
+    claim, store, kept = tenure.claim, process.store, process.kept
+    broker, subjects = process.broker, process.subjects
     found = await found_in(store, zone.name, zone.loaded, settings.tick_s)
     async with AsyncExitStack() as stack:
         thread = stack.enter_context(ThreadPoolExecutor(1, thread_name_prefix="actors"))
@@ -164,12 +192,51 @@ async def hosted_zone(
         deriving = stack.enter_context(ThreadPoolExecutor(1, thread_name_prefix="ground"))
         ground_work = GroundWork(world, deriving, tables_ahead(population.navigator))
         packing = stack.enter_context(ThreadPoolExecutor(1, thread_name_prefix="checkpoints"))
+        owned = await stack.enter_async_context(kept_by_owner(kept, claim))
         answering = Answering(broker, subjects, zone.name)
         desk = SeatDesk(store, claim, round(settings.resume_seconds * 1e6))
-        pending = PendingInputs(metrics)
+        pending, moderated = PendingInputs(metrics), kept.moderation
         people = HostedPeople(world, routes, pending, desk, answering)
-        batches = GatewayBatches(world, people, routes, pending, answering, claim.epoch)
+        moderated.number_apart(place, len(scenes))
+        moderation = HostModeration(
+            moderated,
+            world,
+            storeys,
+            people.guests,
+            SeatsOfZone(people.seat_of),
+            people.expel,
+            loop.time,
+            place,
+        )
+        stack.callback(moderation.close)
+        people.moderation = moderation
+        moderation.walk_outs = WalkOuts(
+            world, people.guests, routes, pending.move, moderation.has_walked_out
+        )
+        schedule = Schedule(world.tick_s, loop.time())
+        _tell_of_pace(schedule, world, people, desk)
+        bulletin = Bulletin()
+        console, doors = await stack.enter_async_context(
+            commanding(
+                world,
+                moderation,
+                owned,
+                zone.loaded,
+                metrics,
+                process.presets,
+                schedule.pace,
+                bulletin,
+            )
+        )
+        parts, tail = await recovered(console, moderation.mutes, found, owned, thread)
+        lines = WaitingLines[HostedGuest](
+            moderation, ChatGate(moderated, storeys), lambda _: False, metrics
+        )
+        batches = GatewayBatches(
+            world, people, routes, pending, answering, claim.epoch, lines, doors
+        )
         people.take_seats(found.seats, loop.time())
+        send_out_the_kicked(people, tail)
         portals = Portals(
             world,
             people,
@@ -181,6 +248,7 @@ async def hosted_zone(
             metrics,
             settings.max_clients,
         )
+        live = live_view(world, storeys, console, moderation, metrics, settings, bulletin)
         ticker = HostTicker(
             world,
             ground_work,
@@ -188,14 +256,20 @@ async def hosted_zone(
             people,
             portals,
             answering,
-            Schedule(world.tick_s, loop.time()),
+            schedule,
             renewal,
             metrics,
             ActorPlanning(world, thread, metrics, settings.planning_interval),
+            console,
+            moderation,
+            live.tap,
         )
         sender = FrameSender(broker, subjects, zone.name, ticker.whole)
         digest = digest_of(zone.loaded.scene)
-        checkpoints = Checkpointing(world, store, claim, digest, packing)
+        checkpoints = Checkpointing(world, parts, store, claim, digest, packing)
+        if CONSOLE not in found.parts:
+            # What is commanded afterwards is found from there.
+            await checkpoints.write()
         _watch(metrics, batches=batches, sender=sender, desk=desk, checkpoints=checkpoints)
         metrics.total("renewals_failed", "Renewals without an answer", lambda: renewal.failures)
         yield HostedZone(
@@ -209,9 +283,28 @@ async def hosted_zone(
             portals=portals,
             checkpoints=checkpoints,
             routes=routes,
+            operated=Operated(console, live),
             broker=broker,
             subjects=subjects,
         )
+
+
+def _tell_of_pace(schedule: Schedule, world: Zone, people: HostedPeople, desk: SeatDesk) -> None:
+    """Tell people of another pace, those too who come; in a pause nobody's seat lapses."""
+    loop, pace = asyncio.get_running_loop(), schedule.pace
+    notices = PaceNotices(people.guests, lambda: schedule.world_time(world.tick, loop.time()))
+
+    def changed(state: PaceState, now_s: float) -> None:
+        desk.keeps_all = state.paused
+        notices.tell_all(state, now_s)
+
+    def welcomed(guest: HostedGuest) -> None:
+        notices.tell_newcomer(guest, pace.state)
+        if people.moderation is not None:
+            people.moderation.greet(guest)
+
+    pace.changed.append(changed)
+    people.welcomed.append(welcomed)
 
 
 def _watch(

@@ -86,7 +86,7 @@ class Portals:
             self._steered[person] = person
             if self._people.record_of(person).portal:
                 self._departures.arrived(person)
-        for person in self._departures.check(lambda _: False):
+        for person in self._departures.check(self._people.is_walked_out):
             self._people.leave_by(person)
 
     async def answer(self, question: Msg) -> None:
@@ -158,7 +158,7 @@ class Portals:
 
     async def _move(self, hop: Hop, destination: str, portal: Portal) -> None:
         """Move the seat; after an outcome that nobody knows, read it until it is known."""
-        record = self._people.record_of(hop.person).model_copy(
+        record = self._people.record_to_go(hop.person).model_copy(
             update={"place": portal.arrival_place, "anywhere": True, "portal": portal.name}
         )
         move: Any = partial(

@@ -30,6 +30,7 @@ Change = tuple[str, int, str]
 VACATE: Final = "vacate"
 REOCCUPY: Final = "reoccupy"
 LEAVE: Final = "leave"
+EXPEL: Final = "expel"
 
 log = structlog.get_logger(__name__)
 
@@ -42,14 +43,17 @@ class SeatDesk:
         self._claim = claim
         self._keep_us = keep_us
         self._changes: dict[int, Change] = {}
+        self._states: dict[int, bytes] = {}
         self._asked = asyncio.Event()
+        self.keeps_all = False
+        """Whether nobody's seat lapses, since the world stands."""
         self.failures = 0
         """Transactions that the database did not take."""
 
     @property
     def waiting(self) -> int:
-        """Changes that wait for the database, at most one for each person."""
-        return len(self._changes)
+        """Changes that wait for the database, at most one of a seat and one of its record."""
+        return len(self._changes) + len(self._states)
 
     def vacate(self, person: int, generation: int) -> None:
         """Note that nobody steers any more."""
@@ -62,6 +66,15 @@ class SeatDesk:
     def leave(self, person: int, generation: int) -> None:
         """Remove the seat of somebody who goes for good."""
         self._change(person, (LEAVE, generation, ""))
+
+    def expel(self, person: int) -> None:
+        """Remove the seat of somebody whom operators send out, whoever has taken it last."""
+        self._change(person, (EXPEL, 0, ""))
+
+    def keep(self, person: int, state: bytes) -> None:
+        """Write another record of somebody into the seat, if it is in this zone yet."""
+        self._states[person] = state
+        self._asked.set()
 
     def look(self) -> None:
         """Read the seats soon: a gateway says that somebody belongs here who is not known."""
@@ -77,9 +90,9 @@ class SeatDesk:
         """
         while True:
             self._asked.clear()
-            changes = dict(self._changes)
+            changes, states = dict(self._changes), dict(self._states)
             try:
-                found = await self._store.write(partial(self._settle, changes))
+                found = await self._store.write(partial(self._settle, changes, states))
             except NotOwnerError:
                 raise
             except StoreError as error:
@@ -90,6 +103,9 @@ class SeatDesk:
             for person, change in changes.items():
                 if self._changes.get(person) == change:
                     del self._changes[person]
+            for person, state in states.items():
+                if self._states.get(person) == state:
+                    del self._states[person]
             read(found)
             await asyncio.sleep(PAUSE_S)
             try:
@@ -106,20 +122,31 @@ class SeatDesk:
         StoreError
             It could not be written.
         """
-        await self._store.write(partial(self._settle, dict(self._changes)))
+        changes, states = dict(self._changes), dict(self._states)
+        await self._store.write(partial(self._settle, changes, states))
         self._changes.clear()
+        self._states.clear()
 
     def _change(self, person: int, change: Change) -> None:
-        self._changes[person] = change
+        before = self._changes.get(person)
+        if before is None or before[0] != EXPEL:
+            self._changes[person] = change
         self._asked.set()
 
-    def _settle(self, changes: dict[int, Change], connection: Connection) -> list[ClusterSeat]:
-        seats.remove_vacant(connection, self._claim, self._keep_us)
+    def _settle(
+        self, changes: dict[int, Change], states: dict[int, bytes], connection: Connection
+    ) -> list[ClusterSeat]:
+        if not self.keeps_all:
+            seats.remove_vacant(connection, self._claim, self._keep_us)
         for person, (kind, generation, gateway) in changes.items():
             if kind == VACATE:
                 seats.vacate(connection, person, generation)
             elif kind == REOCCUPY:
                 seats.reoccupy(connection, person, generation, gateway)
+            elif kind == EXPEL:
+                seats.expel(connection, self._claim, person)
             else:
                 seats.leave(connection, person, generation)
+        if states:
+            seats.keep_states(connection, self._claim, list(states.items()))
         return seats.seats_in(connection, self._claim.zone)

@@ -1,12 +1,17 @@
-"""The ticks of a hosted zone at their times: inputs of gateways in, frames out."""
+"""The ticks of a hosted zone at their times: inputs of gateways and operators in, frames out."""
 
 import asyncio
+from collections.abc import Sequence
+from dataclasses import replace
 from time import perf_counter
+from typing import Final
 
 import structlog
 
+from esplanade.server.console.console import Console
 from esplanade.server.host.answering import Answering
 from esplanade.server.host.gateway_batches import GatewayBatches
+from esplanade.server.host.host_moderation import HostModeration
 from esplanade.server.host.hosted_people import HostedPeople
 from esplanade.server.host.portals import Portals
 from esplanade.server.host.renewal import Renewal
@@ -14,11 +19,17 @@ from esplanade.server.link.frame_format import encode_frame
 from esplanade.server.link.frame_parts import FrameError, FrameKey
 from esplanade.server.link.frames_over_nats import Body, FrameSender
 from esplanade.server.link.whole_state import WholeState
+from esplanade.server.live.tap import Tap
 from esplanade.server.metrics import Metrics
 from esplanade.server.net.actor_planning import ActorPlanning
 from esplanade.server.net.ground_work import GroundWork
 from esplanade.server.net.schedule import Schedule
+from esplanade.server.world.frame import Frame
+from esplanade.server.world.inputs import Input, Still
 from esplanade.server.world.zone import Zone
+
+ALIVE_S: Final = 0.4
+"""A world that stands is told of so often, so that gateways know that its host is there."""
 
 log = structlog.get_logger(__name__)
 
@@ -26,7 +37,7 @@ log = structlog.get_logger(__name__)
 class HostTicker:
     """Runs the ticks of a zone until told to stop, or until the zone is another host's."""
 
-    def __init__(
+    def __init__(  # noqa: PLR0913, PLR0917 (every part of a host meets here)
         self,
         world: Zone,
         ground_work: GroundWork,
@@ -38,6 +49,9 @@ class HostTicker:
         renewal: Renewal,
         metrics: Metrics,
         planning: ActorPlanning,
+        console: Console,
+        moderation: HostModeration,
+        tap: Tap,
     ) -> None:
         self._world = world
         self._ground_work = ground_work
@@ -49,9 +63,13 @@ class HostTicker:
         self._renewal = renewal
         self._metrics = metrics
         self._planning = planning
+        self._console = console
+        self._moderation = moderation
+        self._tap = tap
         self._known = WholeState()
         self._known.begin_with_doors(world.doors.states())
         self._told = world.tick
+        self._told_s = 0.0
         self._stopping = asyncio.Event()
         metrics.total("ticks", "Ticks of the world", lambda: world.tick)
         metrics.total("ticks_late", "Ticks that began late", lambda: schedule.late_ticks)
@@ -67,37 +85,91 @@ class HostTicker:
 
     async def run(self, sender: FrameSender) -> None:
         """Tick, and send the frame of each tick; whole states are to be had after the first."""
-        loop = asyncio.get_running_loop()
+        loop, tick_s, pace = asyncio.get_running_loop(), self._world.tick_s, self._schedule.pace
         await self._tick(sender)
         await sender.start()
         while not self._stopping.is_set() and self._renewal.tenure.holds:
-            due = self._schedule.next_deadline
-            if due > loop.time():
-                try:
-                    async with asyncio.timeout_at(due):
-                        await self._stopping.wait()
-                except TimeoutError:
-                    pass
+            now, due = loop.time(), self._schedule.next_deadline
+            if not pace.stands and due > now:
+                # A slow world is asked no less often, and another pace holds at once.
+                await self._stopped_by(min(due, now + tick_s))
+                self._console.answer()
                 continue
+            if pace.stands and await self._stopped_by(now + tick_s):
+                break
             await self._renewal.certain()
-            if self._renewal.tenure.holds:
+            if not self._renewal.tenure.holds:
+                break
+            if pace.stands:
+                await self._attend(sender)
+            else:
                 await self._tick(sender)
 
+    async def _stopped_by(self, deadline: float) -> bool:
+        try:
+            async with asyncio.timeout_at(deadline):
+                await self._stopping.wait()
+        except TimeoutError:
+            pass
+        return self._stopping.is_set()
+
+    async def _attend(self, sender: FrameSender) -> None:
+        """Take in what came to a world that stands, in a tick in which nobody moves, if need be."""
+        loop = asyncio.get_running_loop()
+        given, derived = self._given(still=True), self._ground_work.drain()
+        is_due = loop.time() - self._told_s > ALIVE_S
+        if given or derived or self._console.waits_for_tick or is_due:
+            await self._run(sender, [Still(), *given, *derived])
+        else:
+            self._metrics.stood()
+            self._tap.stand()
+            await self._answering.send()
+        if self._tap.traces.stood():
+            await self._planning.run(self._tap.traces.make_one)
+
     async def _tick(self, sender: FrameSender) -> None:
-        loop, start = asyncio.get_running_loop(), perf_counter()
+        loop = asyncio.get_running_loop()
         self._schedule.begin(loop.time())
-        self._portals.check(loop.time())
-        wanted = self._people.drain(self._batches.lines(), loop.time())
-        self._world.begin([*self._planning.inputs(), *wanted, *self._ground_work.drain()])
-        frame = self._world.finish(await self._planning.think())
-        self._known.take(frame)
-        self._told = frame.tick
+        given, derived = self._given(still=False), self._ground_work.drain()
+        await self._run(sender, [*self._planning.inputs(), *given, *derived])
+        self._schedule.pace.ticked(loop.time(), self._world.tick, self._world.tick_s)
+        room_s = self._planning.ticked(self._schedule, loop.time())
+        if self._tap.traces.ticked(room_s):
+            # No tick begins meanwhile.
+            await self._planning.run(self._tap.traces.make_one)
+
+    def _given(self, *, still: bool) -> list[Input]:
+        """Inputs of people and operators for the tick that is about to begin."""
+        now_s = asyncio.get_running_loop().time()
+        self._portals.check(now_s)
+        wanted = self._people.drain(self._batches.lines(), now_s, still=still)
+        return [*wanted, *self._console.drain()]
+
+    async def _run(self, sender: FrameSender, inputs: Sequence[Input]) -> None:
+        loop, start = asyncio.get_running_loop(), perf_counter()
+        self._world.begin(inputs)
+        frame = self._moderation.numbered(self._world.finish(await self._planning.think()))
+        self._console.take(frame)
+        told = replace(frame, outcomes=[], rate=self._rate())
+        self._known.take(told)
+        self._told, self._told_s = frame.tick, loop.time()
         self._people.told(frame)
+        await self._send(sender, told)
+        seconds = perf_counter() - start
+        self._metrics.tick_took(seconds, self._world.times.seconds)
+        self._tap.take(frame, seconds, self._schedule.late_ticks)
+
+    async def _send(self, sender: FrameSender, frame: Frame) -> None:
         key = FrameKey(self._renewal.tenure.claim.epoch, frame.tick)
         try:
             await sender.publish(key, encode_frame(frame))
         except FrameError:
             log.exception("a frame cannot be sent", tick=frame.tick)
         await self._answering.send()
-        self._metrics.tick_took(perf_counter() - start, self._world.times.seconds)
-        self._planning.ticked(self._schedule, loop.time())
+
+    def _rate(self) -> float:
+        """The rate by which gateways let clocks run: a usual one that is not reached is as usual,
+        since nobody has chosen it."""
+        state = self._schedule.pace.state
+        usual = state.factor == 1.0 and not state.paused
+        return 1.0 if usual else state.rate

@@ -6,6 +6,8 @@ from typing import Annotated, Final, NamedTuple
 import msgpack
 from pydantic import Field, TypeAdapter, ValidationError
 
+from esplanade.protocol import CloseCode
+
 VERSION: Final = 1
 MOST_BYTES: Final = 512 * 1024
 """Answers that together are longer than this go out in several messages."""
@@ -20,6 +22,10 @@ class Answer(NamedTuple):
     generation: Number
     frame: bytes
     """The frame for the client; empty where the seat is taken by somebody who came later."""
+    close: CloseCode | None = None
+    """The code with which the connection is to end after that frame; None where it does not."""
+    reason: str = ""
+    """The reason of such an end, for metrics."""
 
 
 _ANSWERS: Final = TypeAdapter(tuple[int, str, list[Answer]])

@@ -31,11 +31,15 @@ MOVEMENT: Final = np.dtype(
 MOST_BYTES: Final = 1024 * 1024
 """No longer batch is read."""
 
+MOST_MUTED: Final = 200
+"""A person mutes no more others at once."""
+
 _HEAD: Final = struct.Struct("<2sBxIQQ")
 
 Number = Annotated[int, Field(ge=0, le=2**63 - 1)]
 Held = tuple[Number, Number]
 """A person, and the generation of the seat."""
+Muted = Annotated[list[Number], Field(max_length=MOST_MUTED)]
 _Rest = tuple[
     str,  # gateway
     list[Held],
@@ -45,6 +49,7 @@ _Rest = tuple[
     list[tuple[Number, Number, Number | None]],  # watched
     list[tuple[Number, Number, str, bool]],  # doors
     list[Held],  # stood
+    list[tuple[Number, Number, Muted]],
 ]
 _REST: Final = TypeAdapter(_Rest)
 
@@ -76,6 +81,8 @@ class Batch:
     """Doors that operators want open or closed."""
     stood: list[Held] = field(default_factory=list)
     """Persons whose clients have fallen silent, and whose avatars are to stand."""
+    muted: list[tuple[int, int, list[int]]] = field(default_factory=list)
+    """Whom persons do not want to hear from now on, all of them."""
 
 
 def encode_batch(batch: Batch) -> bytes:
@@ -90,6 +97,7 @@ def encode_batch(batch: Batch) -> bytes:
         batch.watched,
         batch.doors,
         batch.stood,
+        batch.muted,
     ]
     packed: bytes = msgpack.packb(rest)
     return head + batch.movements.tobytes() + packed
@@ -118,9 +126,21 @@ def decode_batch(message: bytes) -> Batch:
         np.isfinite(movements["direction_rad"]).all() and np.isfinite(movements["speed_mps"]).all()
     ):
         raise BatchError("a movement is not finite")
-    gateway, held, departed, walks, lines, watched, doors, stood = _read_rest(message[end:])
+    rest = _read_rest(message[end:])
+    gateway, held, departed, walks, lines, watched, doors, stood, muted = rest
     return Batch(
-        gateway, number, epoch, movements, held, departed, walks, lines, watched, doors, stood
+        gateway,
+        number,
+        epoch,
+        movements,
+        held,
+        departed,
+        walks,
+        lines,
+        watched,
+        doors,
+        stood,
+        muted,
     )
 
 

@@ -6,13 +6,21 @@ four to notice a broker that is silent.
 """
 
 import asyncio
-from collections.abc import AsyncIterator, Sequence
-from contextlib import asynccontextmanager, suppress
+from collections.abc import AsyncIterator, Callable, Sequence
+from contextlib import AbstractAsyncContextManager, asynccontextmanager, suppress
+from functools import partial
 from typing import Any, Final
 
 import structlog
 from nats.aio.client import Client
 from nats.errors import Error as NatsError
+
+from esplanade.server.link.broker_login import (
+    ANYBODY,
+    PASSWORD_VARIABLE,
+    USER_VARIABLE,
+    BrokerLogin,
+)
 
 RETRY_S: Final = 0.1
 """The library tries to come back after so long."""
@@ -23,7 +31,11 @@ CONNECT_S: Final = 5
 PENDING_BYTES: Final = 2 * 1024 * 1024
 """The most bytes that wait for a broker that does not read; beyond them nothing is sent."""
 
+Connecting = AbstractAsyncContextManager[Client]
+"""A connection to a broker for as long as it is held."""
+
 log = structlog.get_logger(__name__)
+_FORBIDDEN: Final = "permissions violation"
 
 
 class BrokerError(ConnectionError):
@@ -31,13 +43,15 @@ class BrokerError(ConnectionError):
 
 
 @asynccontextmanager
-async def connected(servers: Sequence[str], name: str) -> AsyncIterator[Client]:
+async def connected(
+    servers: Sequence[str], name: str, login: BrokerLogin = ANYBODY
+) -> AsyncIterator[Client]:
     """A connection that comes back by itself for as long as it is held.
 
     Raises
     ------
     BrokerError
-        None of the servers answers.
+        None of the servers answers, or none lets this process in.
     """
 
     async def lost() -> None:
@@ -51,7 +65,11 @@ async def connected(servers: Sequence[str], name: str) -> AsyncIterator[Client]:
         log.info("broker back", server=server())
 
     async def failed(error: Exception) -> None:
-        log.debug("broker failed", error=str(error) or type(error).__name__)
+        told = str(error) or type(error).__name__
+        if _FORBIDDEN in told.lower():
+            log.warning("the broker forbids this", error=told)
+        else:
+            log.debug("broker failed", error=told)
 
     client, ending = Client(), False
     settings: dict[str, Any] = {
@@ -68,14 +86,13 @@ async def connected(servers: Sequence[str], name: str) -> AsyncIterator[Client]:
         "error_cb": failed,
     }
     try:
+        settings |= login.settings(tuple(servers))
         # The library would go on trying for ever here as well.
         await asyncio.wait_for(client.connect(**settings), CONNECT_S)
     except (TimeoutError, OSError, NatsError) as error:
         await client.close()
         places = ", ".join(servers)
-        raise BrokerError(
-            f"no NATS server answers at {places}: {str(error) or 'too late'}"
-        ) from None
+        raise BrokerError(f"no NATS server answers at {places}: {_why(error)}") from None
     log.info("broker there", server=server())
     try:
         yield client
@@ -83,3 +100,18 @@ async def connected(servers: Sequence[str], name: str) -> AsyncIterator[Client]:
         ending = True
         with suppress(NatsError, OSError):
             await client.close()
+
+
+def broker_for(
+    servers: Sequence[str], name: str, login: BrokerLogin = ANYBODY
+) -> Callable[[], Connecting]:
+    """Connects under a name, as `connected`, on whichever event loop calls it."""
+    return partial(connected, servers, name, login)
+
+
+def _why(error: Exception) -> str:
+    """The reason for which there is no connection, in words."""
+    text = str(error) or "too late"
+    if "authorization" in text.lower():
+        return f"{text}: give --nats-login, or {USER_VARIABLE} and {PASSWORD_VARIABLE}"
+    return text

@@ -25,7 +25,10 @@ ACK: Final = np.dtype([("id", "<u4"), ("seq", "<u4")])
 MOST_BYTES: Final = 16 * 1024 * 1024
 """No longer body is read."""
 
-_HEAD: Final = struct.Struct("<IIIBxxxIII")
+MOST_RATE: Final = 16.0
+"""Time of no world runs faster."""
+
+_HEAD: Final = struct.Struct("<IIIBxxxIIIf")
 _ACTORS_STOOD: Final = 1
 
 _Constants = tuple[bytes, bytes]
@@ -41,7 +44,7 @@ _Rest = tuple[
     list[int],  # detached
     dict[str, bool],  # doors
     dict[int, Point | None],  # pointing
-    list[tuple[int, str]],  # chat
+    list[tuple[int, str, int]],  # chat
     dict[int, bytes],  # plans
     list[tuple[int, int, _Fault | None]],  # outcomes
 ]
@@ -52,7 +55,7 @@ def encode_frame(frame: Frame) -> bytes:
     """Return the body of a frame."""
     flags = _ACTORS_STOOD if frame.actors_stood else 0
     counts = len(frame.records), len(frame.steps), len(frame.acks)
-    head = _HEAD.pack(frame.tick, frame.people, frame.actors, flags, *counts)
+    head = _HEAD.pack(frame.tick, frame.people, frame.actors, flags, *counts, frame.rate)
     acks = np.empty(len(frame.acks), dtype=ACK)
     acks["id"] = list(frame.acks)
     acks["seq"] = list(frame.acks.values())
@@ -71,7 +74,9 @@ def decode_frame(body: bytes) -> Frame:
     """
     if not _HEAD.size <= len(body) <= MOST_BYTES:
         raise FrameError(f"a frame has {_HEAD.size} to {MOST_BYTES} bytes, not {len(body)}")
-    tick, people, actors, flags, *counts = _HEAD.unpack_from(body)
+    tick, people, actors, flags, *counts, rate = _HEAD.unpack_from(body)
+    if not 0.0 <= rate <= MOST_RATE:
+        raise FrameError(f"time runs 0 to {MOST_RATE:g} times as fast as usual, not {rate}")
     arrays, at = [], _HEAD.size
     for kind, count in zip((RECORD, STEP, ACK), counts, strict=True):
         end = at + count * kind.itemsize
@@ -102,6 +107,7 @@ def decode_frame(body: bytes) -> Frame:
             for command, at_tick, fault in outcomes
         ],
         actors_stood=bool(flags & _ACTORS_STOOD),
+        rate=rate,
     )
 
 
@@ -119,7 +125,7 @@ def _rest_of(frame: Frame) -> list[Any]:
         frame.detached,
         dict(events.doors),
         dict(events.pointing),
-        [(line.id, line.text) for line in events.chat],
+        [(line.id, line.text, line.number) for line in events.chat],
         dict(events.plans),
         [
             (each.command, each.tick, None if each.fault is None else _fault(each.fault))

@@ -34,6 +34,18 @@ class Subjects:
         """The answers for people of one gateway, from the hosts of all zones."""
         return f"{self._root}.g.{_checked('gateway', name)}"
 
+    def calls(self, zone: str, epoch: int) -> str:
+        """Requests of operators, from any gateway to the host that owns a zone since an epoch.
+
+        With `.` and its name behind, it has what belongs to one request after its begin.
+        """
+        return f"{self._root}.z.{_checked('zone', zone)}.op.{epoch}"
+
+    def called(self, gateway: str) -> str:
+        """The answers to requests of operators who are at a gateway, `.` and the name of one
+        behind."""
+        return f"{self._root}.g.{_checked('gateway', gateway)}.op"
+
     @property
     def control(self) -> str:
         """Hints that something has changed in the database, from any process to all."""

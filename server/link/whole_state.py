@@ -1,5 +1,6 @@
 """All that frames have said of a zone: a gateway that has missed some begins anew with it."""
 
+from collections import deque
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import Any, Final
@@ -9,9 +10,14 @@ from numpy.typing import NDArray
 
 from esplanade.protocol.snapshot import RECORD
 from esplanade.protocol.steps import STEP
-from esplanade.server.world.frame import Entered, Events, Frame, Reshaped
+from esplanade.server.link.line_numbers import tick_of
+from esplanade.server.world.frame import Entered, Events, Frame, Line, Reshaped
 from esplanade.server.world.routes import Point
 
+LINES_TICKS: Final = 200
+"""Lines of so many ticks are kept for those who have missed them."""
+LINES_KEPT: Final = 256
+"""Of more lines in that time the oldest are forgotten."""
 BLOCKS: Final = 64
 """The most blocks of records that are kept before they are reduced to the newest of each avatar."""
 
@@ -31,7 +37,10 @@ class WholeState:
         self._acks: dict[int, int] = {}
         self._records = _Newest(RECORD)
         self._steps = _Newest(STEP)
+        self._lines: deque[Line] = deque(maxlen=LINES_KEPT)
+        """Lines with numbers that were said lately."""
         self._numbers = (0, 0, 0)
+        self._rate = 1.0
 
     def __contains__(self, avatar_id: int) -> bool:
         return avatar_id in self._entered
@@ -64,12 +73,17 @@ class WholeState:
                 self._points_at[avatar_id] = target
         self._records.add(frame.records)
         self._steps.add(frame.steps)
+        self._lines.extend(line for line in frame.events.chat if line.number)
+        while self._lines and tick_of(self._lines[0].number) < frame.tick - LINES_TICKS:
+            self._lines.popleft()
         self._numbers = (frame.tick, frame.people, frame.actors)
+        self._rate = frame.rate
 
     def whole(self) -> Frame:
         """A frame that says all of this to somebody who knows nothing.
 
-        It attaches nobody: whose viewers are where is for each gateway to say.
+        It attaches nobody: whose viewers are where is for each gateway to say. It has the lines of
+        the last seconds.
         """
         tick, people, actors = self._numbers
         here = self._entered.keys()
@@ -85,14 +99,21 @@ class WholeState:
             acks=dict(self._acks),
             records=self._records.of(here),
             steps=self._steps.of(here),
-            events=Events(doors=dict(self._doors), pointing=dict(self._points_at)),
+            events=Events(
+                doors=dict(self._doors),
+                pointing=dict(self._points_at),
+                chat=list(self._lines),
+            ),
             reshaped=list(self._reshaped.values()),
+            rate=self._rate,
         )
 
-    def difference(self, whole: Frame) -> Frame:
+    def difference(self, whole: Frame, *, heard: int | None = None) -> Frame:
         """The frame that leads from here to a whole state, whatever was missed in between.
 
-        Viewers go on looking. An avatar that has come to be somebody else leaves and enters.
+        Viewers go on looking. An avatar that has come to be somebody else leaves and enters. Lines
+        of ticks after `heard` are said, the tick whose frame was the last that was taken in; none
+        where nothing was taken in before.
         """
         now = {each.id: each for each in whole.entered}
         bodies = {each.id: each for each in whole.reshaped}
@@ -118,7 +139,16 @@ class WholeState:
                 for each in whole.reshaped
                 if self._is_new(each.id, gone) or self._reshaped.get(each.id) != each
             ],
-            events=replace(whole.events, pointing=pointing, doors=doors),
+            events=replace(
+                whole.events,
+                pointing=pointing,
+                doors=doors,
+                chat=[
+                    line
+                    for line in whole.events.chat
+                    if heard is not None and tick_of(line.number) > heard
+                ],
+            ),
         )
 
     def _is_new(self, avatar_id: int, gone: set[int]) -> bool:

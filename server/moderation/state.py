@@ -1,7 +1,6 @@
 """All that moderators have decided about people and chat, in memory and in the store."""
 
 import asyncio
-import itertools
 import time
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
@@ -56,10 +55,19 @@ class ModerationState:
         self.inbox = Inbox()
         self.chat = ChatLog(keeps=keeps_chat)
         self.later = WrittenLater(store, MOST_WRITTEN_LATER)
+        self.turns_out: list[Callable[[Ban, int | None], int]] = []
+        """Called with each ban that has come to hold, and the person whom it was made of, if any:
+        whoever serves people sends those out whom it is of, and tells how many they are."""
         self._store = store
         self._days = chat_days
+        self._rules: dict[str, Any] = {}
+        """The rules of chat as they were read last."""
         self.now_us = clock_us
-        self._ban_ids = itertools.count(1)
+        self.decided: list[Callable[[], None]] = []
+        """Called after each decision of an operator that is to last."""
+        self._decisions = 0
+        self._last_ban = 0
+        self._apart = (0, 1)
         self._known: tuple[set[int], set[int], set[int]] = (set(), set(), set())
         """Ids of bans and reports, and numbers of lines, that are known to be in the store."""
 
@@ -86,8 +94,9 @@ class ModerationState:
         bans, reports, rules, lines = await self._store.write(begin)
         for ban in bans:
             self.bans.put(ban)
-        self._ban_ids = itertools.count(max((ban.id for ban in bans), default=0) + 1)
+        self._last_ban = max((ban.id for ban in bans), default=0)
         self.inbox.load(reports)
+        self._rules = rules
         for name, value in rules.items():
             self.rules = self.rules.with_rule(name, value)
         for line in lines:
@@ -98,7 +107,14 @@ class ModerationState:
 
     def next_ban(self) -> int:
         """An id that no ban has had."""
-        return next(self._ban_ids)
+        place, of = self._apart
+        self._last_ban += 1 + (place - self._last_ban - 1) % of
+        return self._last_ban
+
+    def number_apart(self, place: int, of: int) -> None:
+        """Let ids of bans be others than those that other processes give at the same time: this
+        one is at a `place` from 0 on, `of` so many."""
+        self._apart = place, of
 
     def fact(self, subject: str, field: str) -> Any:
         """The present value of a field of a subject."""
@@ -137,6 +153,9 @@ class ModerationState:
             await self._store.write(lambda connection: [change(connection) for change in writing])
         for subject, field, value in wanted:
             self._hold(subject, field, value, bans, by)
+        self._decisions += 1
+        for call in self.decided:
+            call()
 
     async def _all_written(self) -> None:
         """Wait until the reports and lines that are to be changed are in the store."""
@@ -215,6 +234,41 @@ class ModerationState:
                 known.add(line.line)
 
             self.later.put(write)
+
+    async def look(self) -> None:
+        """Take in what other processes have decided: their rules hold, and those go whom their
+        bans are of.
+
+        Raises
+        ------
+        StoreError
+            The store cannot be read.
+        """
+        zone, decisions = self._store.zone, -1
+
+        def read(connection: Connection) -> tuple[list[Ban], dict[str, Any]]:
+            return rows.all_bans(connection, zone), rows.all_rules(connection, zone)
+
+        while decisions != self._decisions:  # what was decided here meanwhile is not in it
+            decisions = self._decisions
+            bans, rules = await self._store.read(read)
+        if rules != self._rules:
+            self._rules, self.rules = rules, ChatRules()
+            for name, value in rules.items():
+                self.rules = self.rules.with_rule(name, value)
+        for gone in {ban.id for ban in self.bans} - {ban.id for ban in bans}:
+            self.bans.drop(gone)
+        now_us = self.now_us()
+        for ban in bans:
+            known = self.bans.get(ban.id)
+            if known == ban:
+                continue
+            self.bans.put(ban)
+            self._known[0].add(ban.id)
+            self._last_ban = max(self._last_ban, ban.id)
+            if ban.holds(now_us):
+                for turn_out in self.turns_out:
+                    turn_out(ban, None)
 
     # --- over time ------------------------------------------------------------------------------
 

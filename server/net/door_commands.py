@@ -12,8 +12,8 @@ from esplanade.protocol.messages import SetDoor
 from esplanade.server.accounts.identity import Identity
 from esplanade.server.accounts.rights import Right
 from esplanade.server.console.refusals import RefusedError
+from esplanade.server.net.guests import Guest
 from esplanade.server.net.operator_keys import SERVICE
-from esplanade.server.net.session import Session
 from esplanade.server.store.store import StoreError
 
 Again = Callable[[Identity], Awaitable[Identity | None]]
@@ -39,7 +39,7 @@ class DoorCommands:
     def __init__(self, commands: Commands, again: Again) -> None:
         self._commands = commands
         self._again = again
-        self._wishes: dict[str, tuple[Session, SetDoor]] = {}
+        self._wishes: dict[str, tuple[Guest, SetDoor]] = {}
         self._running: asyncio.Task[None] | None = None
 
     @property
@@ -47,7 +47,7 @@ class DoorCommands:
         """Doors that wait."""
         return len(self._wishes)
 
-    def ask(self, session: Session, wish: SetDoor) -> None:
+    def ask(self, session: Guest, wish: SetDoor) -> None:
         """Move a door soon; a later wish for the same door takes its place."""
         if wish.name not in self._wishes and len(self._wishes) >= MOST:
             session.tell(ProtocolError(ErrorCode.FLOODING, "too many doors wait already", None))
@@ -64,7 +64,7 @@ class DoorCommands:
                 session.tell(fault)
             await asyncio.sleep(PAUSE_S)
 
-    async def _move(self, session: Session, wish: SetDoor) -> ProtocolError | None:
+    async def _move(self, session: Guest, wish: SetDoor) -> ProtocolError | None:
         before = session.operator
         try:
             # A person who said the key has no account that could be looked up.

@@ -98,7 +98,7 @@ class Hub:
             storeys,
             self.sessions,
             self._seating.seats,
-            self._seating.give_up,
+            lambda person: self._seating.give_up(self.sessions[person]),
             lambda: self.now_s,
             0 if surroundings is None else surroundings.first_line,
         )
@@ -188,6 +188,7 @@ class Hub:
 
     async def close(self) -> None:
         """Say goodbye to everyone and wait until they are gone, or cut off."""
+        self.moderation.close()
         text = "the server is shutting down"
         farewell = frames.message(Bye(reason=ByeCode.SHUTDOWN, text=text))
         tasks = [

@@ -48,8 +48,8 @@ class Lines:
         self._muted.pop(viewer, None)
 
     def take(self, heard: Heard) -> tuple[bytes, list[int]]:
-        """Number a line; returns its frame and the viewers who are to be sent it."""
-        line = self.latest = next(self._numbers)
+        """Number a line that has no number; its frame, and the viewers who are to be sent it."""
+        line = self.latest = heard.line.number or next(self._numbers)
         viewers = heard.viewers
         if self._muted:
             speaker = heard.line.id

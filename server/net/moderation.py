@@ -1,23 +1,22 @@
 """Moderates people for operators: words to them, mutes, bans, and the way out."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from datetime import UTC, datetime
 from typing import Any
 
 import structlog
 
-from esplanade.protocol import ByeCode, CloseCode, ErrorCode, NoticeCode, ProtocolError
+from esplanade.protocol import ByeCode, CloseCode, NoticeCode
 from esplanade.protocol.messages import Bye, Hide, Notice
 from esplanade.server.moderation.bans import Ban, Bans
 from esplanade.server.moderation.chat_log import KeptLine
 from esplanade.server.moderation.state import ModerationState
 from esplanade.server.net import frames
+from esplanade.server.net.banned import arguments_of, check_ban, is_banned, only, said_of
+from esplanade.server.net.guests import Guest
 from esplanade.server.net.known_people import KnownPerson
 from esplanade.server.net.lines import Lines
 from esplanade.server.net.mutes import Mutes
-from esplanade.server.net.people_here import PeopleHere
-from esplanade.server.net.seats import Seats, digest_of
-from esplanade.server.net.session import Session
+from esplanade.server.net.people_here import PeopleHere, SeatsHere
 from esplanade.server.world.audience import Heard
 from esplanade.server.world.zone import Zone
 
@@ -33,13 +32,13 @@ class PeopleModeration(PeopleHere):
         state: ModerationState,
         world: Zone,
         storeys: Sequence[float],
-        sessions: Mapping[int, Session],
-        seats: Seats[Session],
-        kick: Callable[[Session], None],
+        sessions: Mapping[int, Guest],
+        seats: SeatsHere,
+        kick: Callable[[int], None],
         now_s: Callable[[], float],
         first_line: int = 0,
     ) -> None:
-        """`kick` gives up the seat of a session, so that its token opens nothing any more. Numbers
+        """`kick` gives up the seat of a person, so that its token opens nothing any more. Numbers
         of lines begin with the milliseconds of now, and so many more."""
         super().__init__(world, storeys, sessions, seats, now_s)
         self.state = state
@@ -48,6 +47,11 @@ class PeopleModeration(PeopleHere):
         self.listeners: list[Listener] = []
         """Are told of reports and, where chat is kept, of lines: the kind, and plain data."""
         self._kick = kick
+        state.turns_out.append(self._turn_out)
+
+    def close(self) -> None:
+        """Send nobody out any more: nobody is here."""
+        self.state.turns_out.remove(self._turn_out)
 
     # --- what operators want --------------------------------------------------------------------
 
@@ -74,30 +78,30 @@ class PeopleModeration(PeopleHere):
             return
         goal = self.walk_outs.way_out(person)
         if goal is None:
-            self.has_walked_out(session, text)
+            self.has_walked_out(person, text)
             return
         x, y, z = goal
         self._tell(person, _notice(text, NoticeCode.WALKED_OUT, {"x": x, "y": y, "z": z}))
         self.walk_outs.begin(session, text, goal, self._now_s())
 
-    def has_walked_out(self, session: Session, text: str) -> None:
+    def has_walked_out(self, person: int, text: str) -> None:
         """Let somebody go who has arrived at the way out."""
-        if session.avatar_id is not None:
-            arguments = {"text": text}
-            self._dismiss(session.avatar_id, text, ByeCode.WALKED_OUT, CloseCode.KICKED, arguments)
+        self._dismiss(person, text, ByeCode.WALKED_OUT, CloseCode.KICKED, {"text": text})
 
     def turn_out(self, ban: Ban, person: int | None = None) -> int:
-        """Send out whoever a ban is of, and this person; returns how many."""
-        only = Bans()
-        only.put(ban)
+        """Send out whoever a ban is of, in all zones of the process, and this person; how many."""
+        return sum(turn_out(ban, person) for turn_out in self.state.turns_out)
+
+    def _turn_out(self, ban: Ban, person: int | None) -> int:
+        alone = only(ban)
         found = [
             avatar_id
             for avatar_id, session in self._sessions.items()
-            if avatar_id == person or self._keeps_out(only, self._of(session))
+            if avatar_id == person or self._keeps_out(alone, self._of(session))
         ]
-        arguments = _of_ban(ban)
+        said, arguments = said_of(ban), arguments_of(ban)
         for avatar_id in found:
-            self._dismiss(avatar_id, _farewell(ban), ByeCode.BANNED, CloseCode.BANNED, arguments)
+            self._dismiss(avatar_id, said, ByeCode.BANNED, CloseCode.BANNED, arguments)
         return len(found)
 
     def check_ban(self, name: str, address: str, resume: str | None) -> None:
@@ -108,17 +112,13 @@ class PeopleModeration(PeopleHere):
         ProtocolError
             One does, and why and until when.
         """
-        digest = None if resume is None else digest_of(resume).hex()
-        ban = self.state.bans.against(name, address, digest, self.state.now_us())
-        if ban is not None:
-            code, close = ErrorCode.BANNED, CloseCode.BANNED
-            raise ProtocolError(code, _farewell(ban), close, _of_ban(ban))
+        check_ban(self.state.bans, self.state.now_us(), name, address, resume)
 
     def hide(self, line: int) -> None:
         """Let a line be shown no more by anybody's client."""
         self._tell_all(frames.message(Hide(lines=[line])))
 
-    def greet(self, session: Session) -> None:
+    def greet(self, session: Guest) -> None:
         """Tell somebody who comes back what was hidden meanwhile."""
         hidden = self.state.chat.hidden
         if hidden:
@@ -163,12 +163,8 @@ class PeopleModeration(PeopleHere):
         self.happened("chat", {**about, "place": self.where(line.id)})
 
     def _keeps_out(self, bans: Bans, person: KnownPerson) -> bool:
-        now_us = self.state.now_us()
-        return any(
-            bans.against(name, person.address, digest, now_us) is not None
-            for name in (person.wished, person.name)
-            for digest in person.digests or (None,)
-        )
+        names = person.wished, person.name
+        return is_banned(bans, self.state.now_us(), names, person.address, person.digests)
 
     def _dismiss(
         self,
@@ -182,8 +178,8 @@ class PeopleModeration(PeopleHere):
         if session is None:
             return
         farewell = frames.message(Bye(reason=reason, text=text, arguments=arguments))
-        self._kick(session)
         session.dismiss(farewell, close, reason.value)
+        self._kick(person)
         log.info("person sent out", id=person, why=reason.value)
 
     def _tell(self, person: int, frame: bytes) -> None:
@@ -198,16 +194,3 @@ class PeopleModeration(PeopleHere):
 
 def _notice(text: str, code: NoticeCode, more: Mapping[str, Any] | None = None) -> bytes:
     return frames.message(Notice(text=text, notice=code, arguments={"text": text, **(more or {})}))
-
-
-def _of_ban(ban: Ban) -> dict[str, Any]:
-    """The arguments of what somebody is told whom a ban keeps out."""
-    until_s = None if ban.until_us is None else ban.until_us / 1e6
-    return {"text": ban.text, "until_s": until_s}
-
-
-def _farewell(ban: Ban) -> str:
-    if ban.until_us is None:
-        return ban.text
-    end = datetime.fromtimestamp(ban.until_us / 1e6, UTC)
-    return f"{ban.text} (until {end:%Y-%m-%d %H:%M} UTC)"

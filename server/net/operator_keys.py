@@ -24,6 +24,15 @@ SERVICE: Final = Identity(account="key", role="doors", rights=frozenset({Right.D
 log = structlog.get_logger(__name__)
 
 
+def operator_of(account: str, address: str, *, moves_doors: bool) -> Identity | None:
+    """The operator that somebody was when they came in; with an account, what it may do is looked
+    up with each command."""
+    if not account:
+        return SERVICE if moves_doors else None
+    rights = frozenset({Right.DOORS}) if moves_doors else frozenset()
+    return Identity(account=account, role="", rights=rights, via="pass", address=address or None)
+
+
 class TooManyKeysError(ValueError):
     """The key was not looked at, because too many wrong ones came from its address."""
 

@@ -5,14 +5,14 @@ from collections.abc import Callable, Mapping
 from esplanade.protocol import NoticeCode
 from esplanade.protocol.messages import Notice
 from esplanade.server.net import frames
-from esplanade.server.net.session import Session
+from esplanade.server.net.guests import Guest
 from esplanade.server.world.pace import PaceState
 
 
 class PaceNotices:
     """Each has the time of the world, by which clients set their clocks."""
 
-    def __init__(self, sessions: Mapping[int, Session], server_time: Callable[[], float]) -> None:
+    def __init__(self, sessions: Mapping[int, Guest], server_time: Callable[[], float]) -> None:
         self._sessions = sessions
         self._server_time = server_time
         self._was_paused = False
@@ -32,7 +32,7 @@ class PaceNotices:
         for session in self._sessions.values():
             session.outbox.post(frame)
 
-    def tell_newcomer(self, session: Session, state: PaceState) -> None:
+    def tell_newcomer(self, session: Guest, state: PaceState) -> None:
         """Tell somebody who has just been welcomed, unless all is as usual."""
         if state.paused or state.factor != 1.0:
             session.outbox.post(frames.message(self._notice(state)))

@@ -2,14 +2,28 @@
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+from typing import Any, Protocol
 
 from esplanade.server.moderation.areas import Area, Place, same_storey
+from esplanade.server.net.guests import Guest
 from esplanade.server.net.known_people import AddressHashes, Gone, KnownPerson
-from esplanade.server.net.seats import Seats
-from esplanade.server.net.session import Session
 from esplanade.server.net.walk_outs import WalkOuts
 from esplanade.server.world.zone import Zone
+
+
+class SeatTokens(Protocol):
+    """A seat, as far as its person can be known again by it."""
+
+    @property
+    def digests(self) -> Sequence[bytes]:
+        """SHA-256 of the tokens that take it."""
+
+
+class SeatsHere(Protocol):
+    """The seats of a zone by their avatars' ids."""
+
+    def of(self, avatar_id: int) -> SeatTokens | None:
+        """The seat of an avatar; None if it has none."""
 
 
 class PeopleHere:
@@ -19,8 +33,8 @@ class PeopleHere:
         self,
         world: Zone,
         storeys: Sequence[float],
-        sessions: Mapping[int, Session],
-        seats: Seats[Session],
+        sessions: Mapping[int, Guest],
+        seats: SeatsHere,
         now_s: Callable[[], float],
     ) -> None:
         self.walk_outs: WalkOuts | None = None
@@ -50,7 +64,7 @@ class PeopleHere:
         session = self._sessions.get(person)
         return self._gone.get(person, self._now_s()) if session is None else self._of(session)
 
-    def remember(self, session: Session) -> None:
+    def remember(self, session: Guest) -> None:
         """Remember somebody whose connection ends."""
         if session.avatar_id is not None:
             self._gone.add(self._of(session), self._now_s())
@@ -101,7 +115,7 @@ class PeopleHere:
             "walked_out": self.walk_outs is not None and person in self.walk_outs,
         }
 
-    def _of(self, session: Session) -> KnownPerson:
+    def _of(self, session: Guest) -> KnownPerson:
         avatar_id = session.avatar_id or 0
         seat = self._seats.of(avatar_id)
         digests = () if seat is None else tuple(each.hex() for each in seat.digests)

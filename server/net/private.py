@@ -8,6 +8,7 @@ import asyncio
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from http import HTTPStatus
+from typing import Protocol
 
 from fastapi import FastAPI, Request, Response
 from fastapi.responses import PlainTextResponse
@@ -24,23 +25,41 @@ from esplanade.server.live.metrics import watch_live
 from esplanade.server.metrics import Metrics
 from esplanade.server.net.asgi import MAX_BODY_BYTES
 from esplanade.server.net.health import UNCACHED, Figures, add_health, served_beside
-from esplanade.server.net.readiness import Readiness
 from esplanade.server.net.tls import Tls
 from esplanade.server.settings import ServerSettings
+
+
+class Ready(Protocol):
+    """Whether people may come in."""
+
+    def hindrance(self) -> str | None:
+        """Why nobody should be sent here; None if people may come in."""
+
+
+class ZonesElsewhere(Protocol):
+    """The zones of a world that are in other processes, and how they are reached."""
+
+    def add_to(self, app: FastAPI) -> None:
+        """Have requests about zones answered there."""
+
+    async def run(self) -> None:
+        """Keep up the connection to them on the event loop of the port, until cancelled."""
 
 
 @asynccontextmanager
 async def private_port(
     settings: ServerSettings,
     metrics: Metrics,
-    readiness: Readiness,
+    readiness: Ready,
     gate: Gate,
     assets: Assets,
     tls: Tls | None = None,
+    elsewhere: ZonesElsewhere | None = None,
 ) -> AsyncIterator[int]:
     """Listen for operators, and yield the number of the port.
 
-    The figures of the metrics are read on the event loop that calls this.
+    The figures of the metrics are read on the event loop that calls this. What is `elsewhere` is
+    not answered here.
 
     Raises
     ------
@@ -64,17 +83,25 @@ async def private_port(
     )
     watch_live(metrics, lambda: [each.live for each in gate.zones.values()])
     figures = Figures(metrics, asyncio.get_running_loop())
-    app = operators_api(figures, readiness, gate, assets)
+    app = operators_api(figures, readiness, gate, assets, elsewhere)
     host, port = settings.private_host, settings.private_port
 
     async def pulse() -> None:
+        if elsewhere is not None:
+            await elsewhere.run()
         await beating(lambda: [each.live for each in gate.zones.values()])
 
     async with served_beside(app, host, port, tls, pulse) as number:
         yield number
 
 
-def operators_api(figures: Figures, readiness: Readiness, gate: Gate, assets: Assets) -> FastAPI:
+def operators_api(
+    figures: Figures,
+    readiness: Ready,
+    gate: Gate,
+    assets: Assets,
+    elsewhere: ZonesElsewhere | None = None,
+) -> FastAPI:
     """The application behind the private port: /healthz, /readyz, /metrics, /console, the API."""
     app = FastAPI(
         title="Esplanade",
@@ -86,8 +113,9 @@ def operators_api(figures: Figures, readiness: Readiness, gate: Gate, assets: As
         max_body_size=MAX_BODY_BYTES,
         exception_handlers={HTTPStatus.NOT_FOUND: _nothing_here},
     )
-
-    app.add_middleware(ZonePaths)
+    if elsewhere is not None:
+        elsewhere.add_to(app)
+    app.add_middleware(ZonePaths)  # the last that is added is the first that a request meets
     add_health(app, figures, readiness.hindrance)
     add_pages(app, assets)
     add_api(app, gate)

@@ -2,41 +2,44 @@
 
 import asyncio
 from collections.abc import Callable
-from typing import Final
+from typing import Final, Generic, TypeVar
 
 from esplanade.protocol import ErrorCode, ProtocolError
 from esplanade.server.metrics import Metrics
 from esplanade.server.net.chat_gate import ChatGate
+from esplanade.server.net.guests import Guest
 from esplanade.server.net.moderation import PeopleModeration
-from esplanade.server.net.session import Session
 from esplanade.server.world.inputs import Say
 
 MAX_LINES: Final = 1024
 """Lines of chat that may wait for the next tick, of all people together."""
 
 
-class WaitingLines:
+Speaker = TypeVar("Speaker", bound=Guest)
+
+
+class WaitingLines(Generic[Speaker]):
     """Lines of those who are in the world, and of those at the door until they are in."""
 
     def __init__(
         self,
         moderation: PeopleModeration,
         chat_gate: ChatGate,
-        is_at_the_door: Callable[[Session], bool],
+        is_at_the_door: Callable[[Speaker], bool],
         metrics: Metrics,
     ) -> None:
         self._moderation = moderation
         self._chat_gate = chat_gate
         self._is_at_the_door = is_at_the_door
         self._metrics = metrics
-        self._lines: list[tuple[Session, str]] = []
+        self._lines: list[tuple[Speaker, str]] = []
         metrics.gauge(
             "lines_waiting",
             "Lines of chat that wait for the next tick",
             lambda: len(self._lines),
         )
 
-    def put(self, session: Session, text: str) -> None:
+    def put(self, session: Speaker, text: str) -> None:
         """Say a line in the next tick; that of somebody at the door waits until they are in."""
         if len(self._lines) >= MAX_LINES:
             session.refuse_line("all", "too many people talk at once; nobody heard your line")

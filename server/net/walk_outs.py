@@ -11,8 +11,8 @@ from esplanade.protocol import ProtocolError
 from esplanade.protocol.messages import WalkTo
 from esplanade.server.moderation.areas import Place
 from esplanade.server.net.fair_queue import Asker
+from esplanade.server.net.guests import Guest
 from esplanade.server.net.route_requests import RouteRequests
-from esplanade.server.net.session import Session
 from esplanade.server.world.inputs import Follow
 from esplanade.server.world.routes import Route
 from esplanade.server.world.zone import Zone
@@ -38,10 +38,10 @@ class WalkOuts:
     def __init__(
         self,
         world: Zone,
-        sessions: Mapping[int, Session],
+        sessions: Mapping[int, Guest],
         routes: RouteRequests,
         follow: Callable[[Follow], None],
-        leave: Callable[[Session, str], None],
+        leave: Callable[[int, str], None],
     ) -> None:
         """`follow` takes a movement for the next tick, `leave` lets a person go with a text."""
         self._world = world
@@ -69,7 +69,7 @@ class WalkOuts:
         spawns = [(*spawn.position, spawn.z_m) for spawn in self._world.scene.spawns]
         return min(spawns, key=lambda spawn: math.dist(spawn, place), default=None)
 
-    def begin(self, session: Session, text: str, goal: Place, now_s: float) -> None:
+    def begin(self, session: Guest, text: str, goal: Place, now_s: float) -> None:
         """Walk somebody out to that place."""
         avatar_id = session.avatar_id
         if avatar_id is None:
@@ -116,7 +116,6 @@ class WalkOuts:
 
     def _end(self, avatar_id: int) -> None:
         walk = self._under_way.pop(avatar_id)
-        session = self._sessions.get(avatar_id)
-        if session is not None:
-            self._leave(session, walk.text)
+        if avatar_id in self._sessions:
+            self._leave(avatar_id, walk.text)
             log.info("person walked out", id=avatar_id)

@@ -43,7 +43,7 @@ class Wishes:
         moderation: PeopleModeration,
         walk_outs: WalkOuts,
         departures: Departures[Session],
-        lines: WaitingLines,
+        lines: WaitingLines[Session],
         reporting: Reporting,
     ) -> None:
         self.by_commands: DoorCommands | None = None

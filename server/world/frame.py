@@ -45,6 +45,8 @@ class Line:
 
     id: int
     text: str
+    number: int = 0
+    """The number by which clients know it; 0 where it is given by whoever tells them."""
 
 
 @dataclass(frozen=True)
@@ -90,6 +92,8 @@ class Frame:
     """The outcomes of operators' commands in this tick."""
     actors_stood: bool = False
     """Whether there are actors for whom nothing was planned."""
+    rate: float = 1.0
+    """Seconds of the world in a second at this time, where viewers are not told by other ways."""
 
 
 class Recorder:

@@ -206,7 +206,5 @@ def northward_m(view: View, before: dict[str, Any] | None) -> float:
 def off_axis(here: dict[str, Any] | None, there: dict[str, Any], yaw: float) -> float:
     """The angle between where the camera looks and somebody, radians."""
     assert here is not None
-    to = math.atan2(
-        there["pose"]["y"] - here["pose"]["y"], there["pose"]["x"] - here["pose"]["x"]
-    )
+    to = math.atan2(there["pose"]["y"] - here["pose"]["y"], there["pose"]["x"] - here["pose"]["x"])
     return abs(math.remainder(to - yaw, 2.0 * math.pi))

@@ -6,7 +6,7 @@ import signal
 import socket
 import subprocess
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import Final
 
@@ -22,10 +22,17 @@ REQUIRE_VARIABLE: Final = "ESPLANADE_REQUIRE_NATS"
 class NatsServer:
     """A broker that a test kills, freezes and starts again at the same address."""
 
-    def __init__(self, program: str, port: int | None = None, *words: str) -> None:
-        """`words` are further options of the program."""
+    def __init__(
+        self,
+        program: str,
+        port: int | None = None,
+        words: Sequence[str] = (),
+        environment: Mapping[str, str] | None = None,
+    ) -> None:
+        """`words` are more of its options, `environment` more of its variables."""
         self._program = program
         self._words = words
+        self._environment = {**os.environ, **(environment or {})}
         self._process: subprocess.Popen[bytes] | None = None
         (self._port,) = free_ports(1) if port is None else (port,)
 
@@ -43,9 +50,13 @@ class NatsServer:
         """Begin, unless it runs, and wait until it listens."""
         if self._process is not None:
             return
-        words = [self._program, "-a", "127.0.0.1", "-p", str(self._port), *self._words]
+        words = [self._program, *self._words, "-a", "127.0.0.1", "-p", str(self._port)]
         self._process = subprocess.Popen(
-            words, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+            words,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+            env=self._environment,
         )
         end = time.monotonic() + PATIENCE_S
         while time.monotonic() < end:
@@ -84,7 +95,7 @@ class NatsServers:
         routes = [f"nats://127.0.0.1:{port}" for port in ports[number:]]
         joined = ("--cluster_name", "esplanade", "--routes", ",".join(routes))
         self.servers = [
-            NatsServer(program, port, "--cluster", route, *joined)
+            NatsServer(program, port, ("--cluster", route, *joined))
             for port, route in zip(ports, routes, strict=False)
         ]
 
@@ -117,9 +128,9 @@ Brokers = NatsServer | NatsServers
 
 
 @contextmanager
-def nats_server(*words: str) -> Iterator[NatsServer]:
-    """Run a broker of its own, with further options of the program."""
-    server = NatsServer(_program(), None, *words)
+def nats_server(*words: str, environment: Mapping[str, str] | None = None) -> Iterator[NatsServer]:
+    """Run a broker of its own, with more options and variables."""
+    server = NatsServer(_program(), None, words, environment)
     server.start()
     try:
         yield server

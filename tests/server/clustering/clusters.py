@@ -11,6 +11,7 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, redirect_stderr, redirect_stdout
 from pathlib import Path
 from typing import Any, Final, NamedTuple, TypeVar
@@ -22,6 +23,7 @@ from esplanade.server.store.location import Location
 from tests.patience import COMPILING_PATIENCE_S, PATIENCE_S
 from tests.server.brokers import Brokers
 from tests.server.client import PLACING_KEY
+from tests.server.console.operators import Operator
 
 ZONES: Final = ("yard", "hall")
 HOSTS: Final = 3
@@ -171,6 +173,12 @@ class Gateway(Process):
         url: str = self.wait_for("open")["url"]
         return int(url.rsplit(":", 1)[1].strip("/"))
 
+    @property
+    def private_port(self) -> int:
+        """The port for operators."""
+        url: str = self.wait_for("open")["private"]
+        return int(url.rsplit(":", 1)[1])
+
 
 Kind = TypeVar("Kind", bound=Process)
 
@@ -182,6 +190,8 @@ class Cluster:
         self.database = database
         self.broker = broker
         self.processes: list[Process] = []
+        self.login: dict[str, dict[str, str]] = {}
+        """More variables of hosts, by `zone`, and of gateways, by `gateway`."""
         self._numbers = itertools.count(1)
         self._waiting = ("--resume-seconds", f"{resume_s:g}")
 
@@ -207,7 +217,7 @@ class Cluster:
 
     def host(self, *words: str, name: str, actors: int = 1, **environment: str) -> Process:
         """Begin a host, with further variables of its environment."""
-        ours = {**self.environment, **environment}
+        ours = {**self.environment, **self.login.get("zone", {}), **environment}
         return self._begun(
             Process(name, ["zone", *words, "--actors", str(actors), *self._waiting], ours)
         )
@@ -216,8 +226,22 @@ class Cluster:
         """Begin a gateway at a free port."""
         places = ("--host", "127.0.0.1", "--port", "0")
         return self._begun(
-            Gateway(name, ["gateway", *places, *words, *self._waiting], self.environment)
+            Gateway(
+                name,
+                ["gateway", *places, *words, *self._waiting],
+                {**self.environment, **self.login.get("gateway", {})},
+            )
         )
+
+    def operator(self, role: str, gateway: "Gateway | None" = None, zone: str = "") -> Operator:
+        """A new operator of a role who asks by a token, at a gateway."""
+        name = f"{role}-{next(self._numbers)}"
+        words = ["op", "user", "add", name, "--role", role, "--token", "--store", self.database]
+        with ThreadPoolExecutor(1) as thread:  # it has an event loop of its own
+            done = thread.submit(said, words).result()
+        assert done.code == 0, done.errors
+        at = gateway or self.gateways[0]
+        return Operator(at.private_port, done.output.strip(), zone)
 
     def ask(self, query: Callable[[Connection], Any]) -> Any:
         """Ask the database."""

@@ -13,10 +13,14 @@ from tests.server.http import get
 
 @dataclass
 class Operator:
-    """Asks a server by a token; each request gives the status and the body."""
+    """Asks a server by a token; each request gives the status and the body.
+
+    With a zone, all requests are about that one.
+    """
 
     port: int
     token: str
+    zone: str = ""
 
     async def get(self, path: str) -> tuple[int, Any]:
         return await self.request("GET", path)
@@ -29,7 +33,8 @@ class Operator:
         self, method: str, path: str, headers: Mapping[str, str] | None = None, body: bytes = b""
     ) -> tuple[int, Any]:
         fields = {"Authorization": f"Bearer {self.token}", **(headers or {})}
-        answer = await get(self.port, f"/api/v1{path}", fields, method, body)
+        at = f"/api/v1/zones/{self.zone}{path}" if self.zone else f"/api/v1{path}"
+        answer = await get(self.port, at, fields, method, body)
         return answer.status, json.loads(answer.body)
 
     async def values(self, actor: str) -> dict[str, Any]:

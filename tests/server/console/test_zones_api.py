@@ -1,33 +1,19 @@
 """Operators work in each zone of a world: paths with /zones/NAME are about that zone."""
 
-import json
 from collections.abc import AsyncIterator
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import pytest_asyncio
 
+from esplanade.protocol import CloseCode
+from esplanade.protocol.messages import Bye, Travel
 from esplanade.server.app import Running
+from tests.server.client import joined
 from tests.server.conftest import Serving
 from tests.server.console.operators import Operator, operator
 from tests.server.http import get
 from tests.server.live.consoles import live_console
-from tests.server.zones import until, write_town
-
-
-@dataclass
-class InZone(Operator):
-    """Asks about one zone."""
-
-    zone: str = ""
-
-    async def request(self, method: str, path: str, *rest: Any) -> tuple[int, Any]:
-        headers, body = (*rest, None, b"")[:2]
-        fields = {"Authorization": f"Bearer {self.token}", **(headers or {})}
-        at = f"/api/v1/zones/{self.zone}{path}"
-        answer = await get(self.port, at, fields, method, body or b"")
-        return answer.status, json.loads(answer.body)
+from tests.server.zones import IN_GATE, until, write_town
 
 
 @pytest_asyncio.fixture
@@ -37,9 +23,9 @@ async def town(serving: Serving, tmp_path: Path) -> AsyncIterator[Running]:
         yield server
 
 
-async def in_zone(server: Running, zone: str) -> InZone:
+async def in_zone(server: Running, zone: str) -> Operator:
     asked = await operator(server, f"olga-{zone}", "admin")
-    return InZone(asked.port, asked.token, zone)
+    return Operator(asked.port, asked.token, zone)
 
 
 async def test_each_zone_is_told_and_has_paths_of_its_own(town: Running) -> None:
@@ -50,13 +36,13 @@ async def test_each_zone_is_told_and_has_paths_of_its_own(town: Running) -> None
         ("yard", "The yard", 2),
         ("hall", "The hall", 2),
     ]
-    hall = InZone(olga.port, olga.token, "hall")
+    hall = Operator(olga.port, olga.token, "hall")
     assert (await hall.get("/zones"))[1]["here"] == "hall"
     assert (await hall.get("/world"))[1]["scene"] == "The hall"
     assert (await olga.get("/world"))[1]["scene"] == "The yard"
     _, actors = await hall.get("/actors")
     assert {one["id"] for one in actors["actors"]} == {"hall/actor-1", "hall/actor-2"}
-    status, refused = await InZone(olga.port, olga.token, "attic").get("/world")
+    status, refused = await Operator(olga.port, olga.token, "attic").get("/world")
     assert (status, refused["faults"][0]["code"]) == (404, "no_such_zone")
     assert "there are: yard, hall" in refused["faults"][0]["text"]
 
@@ -67,7 +53,7 @@ async def test_a_command_changes_the_zone_that_it_is_sent_to(town: Running) -> N
     status, answer = await hall.send(command)
     assert status == 200, answer
     assert (await hall.values("hall/actor-1"))["risk_weight"] == 12.0
-    yard = InZone(hall.port, hall.token, "yard")
+    yard = Operator(hall.port, hall.token, "yard")
     assert (await yard.values("yard/actor-1"))["risk_weight"] != 12.0
     # The audit is one for the whole world.
     for asker in (hall, yard):
@@ -95,3 +81,18 @@ async def test_a_scene_alone_is_one_zone_without_a_name(serving: Serving) -> Non
         _, found = await olga.get("/zones")
         assert found["here"] == ""
         assert [one["name"] for one in found["zones"]] == [""]
+
+
+async def test_a_ban_reaches_who_is_in_another_zone_at_once(town: Running) -> None:
+    mona = await operator(town, "mona", "moderator")
+    async with joined(town.port, "Eve", at=IN_GATE) as eve, joined(town.port, "Ann") as ann:
+        assert (await eve.until(Travel)).zone == "hall"
+        await until(lambda: eve.id in town.zones["hall"].hub.sessions)
+        command = {"op": "ban", "name_pattern": "Eve", "text": "No."}
+        status, answer = await Operator(mona.port, mona.token, "yard").send(command)
+        assert status == 200, answer
+        messages, code = await eve.last_words()
+        assert code == CloseCode.BANNED
+        assert [each.text for each in messages if isinstance(each, Bye)] == ["No."]
+        await ann.ticks(5)
+    await until(lambda: not any(zone.hub.people for zone in town.zones.values()))

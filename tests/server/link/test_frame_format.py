@@ -50,12 +50,13 @@ def full_frame() -> Frame:
         events=Events(
             doors={"gate": True},
             pointing={5: (1.0, 2.5, 0.0), 6: None},
-            chat=[Line(7, "good morning"), Line(2, "bye")],
+            chat=[Line(7, "good morning", 2**52), Line(2, "bye")],
             plans={5: b"\x92\x44\x80"},
         ),
         reshaped=[Reshaped(5, 0.4, 0.9, 1.8, (b"\x80", b"\x81"))],
         outcomes=[Outcome(3, 1200), Outcome(4, 1199, fault)],
         actors_stood=True,
+        rate=0.25,
     )
 
 
@@ -106,7 +107,7 @@ def test_bad_bytes_are_refused_by_name(data: st.DataObject) -> None:
 )
 def test_events_that_are_none_are_refused(rest: bytes, message: str) -> None:
     empty = replace(full_frame(), records=full_frame().records[:0], steps=new_step_records(0))
-    head = encode_frame(replace(empty, acks={}))[:28]
+    head = encode_frame(replace(empty, acks={}))[:32]
     with pytest.raises(FrameError, match=message):
         decode_frame(head + rest)
 

@@ -4,6 +4,7 @@ import asyncio
 import signal
 from collections.abc import AsyncIterator, Callable, Iterator
 from contextlib import AsyncExitStack, asynccontextmanager
+from dataclasses import replace
 from itertools import pairwise
 from typing import Final
 
@@ -14,8 +15,11 @@ from esplanade.server.link.broker import BrokerError, connected
 from esplanade.server.link.frame_format import decode_frame, encode_frame
 from esplanade.server.link.frame_parts import FrameKey
 from esplanade.server.link.frames_over_nats import FRAMES_WAITING, FrameReceiver, FrameSender
+from esplanade.server.link.line_numbers import line_number
 from esplanade.server.link.subjects import Subjects
 from esplanade.server.link.whole_state import WholeState
+from esplanade.server.world.frame import Frame
+from esplanade.server.world.inputs import Input
 from tests.patience import PATIENCE_S
 from tests.server.brokers import NatsServer, nats_server
 from tests.server.link.test_frame_format import inputs_of, same
@@ -102,6 +106,17 @@ async def until(receiver: FrameReceiver, done: Callable[[FrameKey], bool]) -> li
 async def test_a_broker_that_is_killed_loses_nothing_of_the_state(server: NatsServer) -> None:
     trial, host, gateway = Trial(FIELD, max_people=40), WholeState(), WholeState()
     host.take(trial.frame())
+    said: list[int] = []
+    heard: list[int] = []
+
+    def told(*inputs: Input) -> Frame:
+        frame = trial.frame(*inputs)
+        chat = [
+            replace(line, number=line_number(2, frame.tick, k))
+            for k, line in enumerate(frame.events.chat)
+        ]
+        said.extend(line.number for line in chat)
+        return replace(frame, events=replace(frame.events, chat=chat))
 
     def whole() -> tuple[FrameKey, bytes]:
         frame = host.whole()
@@ -112,10 +127,15 @@ async def test_a_broker_that_is_killed_loses_nothing_of_the_state(server: NatsSe
         await sender.start()
 
         async def take() -> None:
+            last: int | None = None
             while True:
                 key, body = await receiver.next()
                 frame = decode_frame(body)
-                gateway.take(gateway.difference(frame) if key.is_whole else frame)
+                if key.is_whole:
+                    frame = gateway.difference(frame, heard=last)
+                heard.extend(line.number for line in frame.events.chat)
+                last = frame.tick
+                gateway.take(frame)
 
         taking = asyncio.create_task(take())
         for tick in range(160):
@@ -123,7 +143,7 @@ async def test_a_broker_that_is_killed_loses_nothing_of_the_state(server: NatsSe
                 server.kill()
             if tick == 80:
                 server.start()
-            frame = trial.frame(*inputs_of(trial, tick))
+            frame = told(*inputs_of(trial, tick))
             host.take(frame)
             await sender.publish(FrameKey(5, frame.tick), encode_frame(frame))
             await asyncio.sleep(TICK_S)
@@ -137,6 +157,8 @@ async def test_a_broker_that_is_killed_loses_nothing_of_the_state(server: NatsSe
         taking.cancel()
         await sender.stop()
     assert sender.left_out > 10
+    assert len(said) > 10
+    assert heard == said  # those of the gap as well, and none twice
     assert len(host.whole().entered) > 20
 
 

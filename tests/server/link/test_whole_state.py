@@ -9,7 +9,7 @@ import pytest
 from esplanade.server.link.frame_format import decode_frame, encode_frame
 from esplanade.server.link.whole_state import WholeState
 from esplanade.server.world.audience import Audience, News
-from esplanade.server.world.frame import Entered, Frame, Reshaped
+from esplanade.server.world.frame import Entered, Frame, Line, Reshaped
 from tests.server.doubles import ScriptedPopulation
 from tests.server.link.test_frame_format import full_frame, inputs_of, same
 from tests.server.worlds import FIELD, TICK_S, Trial
@@ -31,7 +31,8 @@ def test_a_whole_state_says_all_that_frames_have_said() -> None:
     assert (whole.tick, whole.people, whole.acks) == (1201, 2, {8: 3})
     assert whole.records["id"].tolist() == [8]
     assert whole.steps["id"].tolist() == [8]
-    assert (whole.events.chat, whole.events.plans, whole.attached) == ([], {}, [])
+    assert (whole.events.plans, whole.attached) == ({}, [])
+    assert whole.events.chat == [Line(7, "good morning", 2**52)] * 2  # what has a number
     assert whole.events.pointing == {5: (1.0, 2.5, 0.0)}
     again = WholeState()
     again.take(decode_frame(encode_frame(whole)))

@@ -108,3 +108,42 @@ def test_an_inbox_forgets_the_oldest_that_are_settled(monkeypatch: pytest.Monkey
     box.check_room("a4")
     assert box.add(report(4), "a4") == [2]
     assert ([each.id for each in box], box.open) == ([1, 3, 4], 3)
+
+
+async def test_decisions_of_other_processes_are_taken_in(store: SqlStore) -> None:
+    east, west = await opened(store), await opened(store)
+    east.number_apart(0, 2)
+    west.number_apart(1, 2)
+    sent_out: list[tuple[int, int | None]] = []
+
+    def turn_out(one: Ban, person: int | None) -> int:
+        sent_out.append((one.id, person))
+        return 0
+
+    west.turns_out.append(turn_out)
+    numbers = east.next_ban(), west.next_ban()
+    assert len({*numbers}) == 2
+    await east.decide({f"ban:{numbers[0]}": {"banned": True}}, [ban(numbers[0])], "mona")
+    await west.decide({f"ban:{numbers[1]}": {"banned": True}}, [ban(numbers[1], "Bob")], "max")
+    await east.decide({"people": {"slow_mode_s": 5.0}}, [], "mona")
+    await west.look()
+    assert sent_out == [(numbers[0], None)]  # its own was told of where it was made
+    assert west.rules.every_s == 5.0
+    assert sorted(each.id for each in west.bans) == sorted(numbers)
+    assert {east.next_ban(), west.next_ban()}.isdisjoint(numbers)
+    await west.decide({f"ban:{numbers[0]}": {"banned": False}}, [], "max")
+    await east.look()
+    assert east.fact(f"ban:{numbers[0]}", "banned") is False
+    assert east.fact(f"ban:{numbers[1]}", "banned") is True
+    await east.decide({"people": {"slow_mode_s": None}}, [], "mona")
+    await west.look()
+    assert west.rules.every_s == 0.0
+    assert sent_out == [(numbers[0], None)]
+
+
+async def test_a_look_that_a_decision_overtakes_drops_nothing(store: SqlStore) -> None:
+    held = await opened(store)
+    looking = asyncio.create_task(held.look())
+    await held.decide({"ban:1": {"banned": True}}, [ban(1)], None)
+    await looking
+    assert held.fact("ban:1", "banned") is True
