@@ -5,6 +5,7 @@ each person, and what it tells comes back by a call. While the database is away 
 """
 
 import asyncio
+from collections import defaultdict
 from collections.abc import Callable
 from functools import partial
 from typing import Final
@@ -115,11 +116,15 @@ class SeatDesk:
 
     def _settle(self, changes: dict[int, Change], connection: Connection) -> list[ClusterSeat]:
         seats.remove_vacant(connection, self._claim, self._keep_us)
+        # A statement for each person of a crowd would hold up the renewal of the lease.
+        alike: defaultdict[tuple[str, str], list[seats.Held]] = defaultdict(list)
         for person, (kind, generation, gateway) in changes.items():
+            alike[kind, gateway].append((person, generation))
+        for (kind, gateway), held in alike.items():
             if kind == VACATE:
-                seats.vacate(connection, person, generation)
+                seats.vacate(connection, held)
             elif kind == REOCCUPY:
-                seats.reoccupy(connection, person, generation, gateway)
+                seats.reoccupy(connection, held, gateway)
             else:
-                seats.leave(connection, person, generation)
+                seats.leave(connection, held)
         return seats.seats_in(connection, self._claim.zone)
