@@ -10,7 +10,18 @@ from dataclasses import dataclass, field
 from itertools import islice
 from typing import Any, Final
 
-from sqlalchemy import ColumnElement, Connection, Row, delete, func, insert, or_, select, update
+from sqlalchemy import (
+    ColumnElement,
+    Connection,
+    Row,
+    delete,
+    func,
+    insert,
+    or_,
+    select,
+    tuple_,
+    update,
+)
 from sqlalchemy.exc import IntegrityError
 
 from esplanade.server.accounts.identity import digest_of
@@ -22,6 +33,9 @@ from esplanade.server.store.tables import CLUSTER_SEATS
 NAMES_TOGETHER: Final = 64
 """The number of names that are looked up at once."""
 _TOKEN_BYTES: Final = 24
+
+Held = tuple[int, int]
+"""A person, and the generation of the seat."""
 
 
 @dataclass(frozen=True)
@@ -128,30 +142,33 @@ def has(connection: Connection, token: str, keep_us: int, *, now: Moment = NOW_U
     return connection.execute(chosen).one_or_none() is not None
 
 
-def confirm(connection: Connection, person: int, generation: int) -> bool:
-    """Note that the newest token has arrived: the one before takes the seat no more."""
-    changed = update(CLUSTER_SEATS).where(*_held(person, generation)).values(used=None)
-    return connection.execute(changed).rowcount == 1
+def confirm(connection: Connection, held: Collection[Held]) -> int:
+    """Note that the newest tokens have arrived: those before take these seats no more. Returns of
+    how many it was noted."""
+    changed = update(CLUSTER_SEATS).where(_among(held)).values(used=None)
+    return connection.execute(changed).rowcount
 
 
-def vacate(connection: Connection, person: int, generation: int, *, now: Moment = NOW_US) -> bool:
-    """Note that nobody steers any more, unless somebody has taken the seat since."""
-    changed = update(CLUSTER_SEATS).where(*_held(person, generation))
-    left = changed.values(vacated_us=now, gateway=None)
-    return connection.execute(left).rowcount == 1
+def vacate(connection: Connection, held: Collection[Held], *, now: Moment = NOW_US) -> int:
+    """Note that nobody steers these any more, unless somebody has taken the seat since.
+
+    One statement for all of them, as of those below: when a gateway ends, its crowd is lost at
+    once. Returns of how many it was noted.
+    """
+    changed = update(CLUSTER_SEATS).where(_among(held)).values(vacated_us=now, gateway=None)
+    return connection.execute(changed).rowcount
 
 
-def reoccupy(connection: Connection, person: int, generation: int, gateway: str) -> bool:
-    """Note that the client that was thought lost steers after all, if nobody took the seat."""
-    changed = update(CLUSTER_SEATS).where(*_held(person, generation))
-    back = changed.values(vacated_us=None, gateway=gateway)
-    return connection.execute(back).rowcount == 1
+def reoccupy(connection: Connection, held: Collection[Held], gateway: str) -> int:
+    """Note that clients of a gateway that were thought lost steer after all, if nobody took their
+    seats; returns of how many it was noted."""
+    changed = update(CLUSTER_SEATS).where(_among(held)).values(vacated_us=None, gateway=gateway)
+    return connection.execute(changed).rowcount
 
 
-def leave(connection: Connection, person: int, generation: int) -> bool:
-    """Remove the seat of a person who goes for good."""
-    gone = delete(CLUSTER_SEATS).where(*_held(person, generation))
-    return connection.execute(gone).rowcount == 1
+def leave(connection: Connection, held: Collection[Held]) -> int:
+    """Remove the seats of people who go for good; returns their number."""
+    return connection.execute(delete(CLUSTER_SEATS).where(_among(held))).rowcount
 
 
 def expel(connection: Connection, owner: Claim, person: int) -> bool:
@@ -255,9 +272,9 @@ def seats_in(connection: Connection, zone: str) -> list[ClusterSeat]:
     return [_seat(row) for row in connection.execute(chosen.order_by(CLUSTER_SEATS.c.person))]
 
 
-def _held(person: int, generation: int) -> tuple[ColumnElement[bool], ColumnElement[bool]]:
+def _among(held: Collection[Held]) -> ColumnElement[bool]:
     table = CLUSTER_SEATS.c
-    return (table.person == person, table.generation == generation)
+    return tuple_(table.person, table.generation).in_(list(held))
 
 
 def _taken_by(

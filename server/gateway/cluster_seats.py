@@ -123,12 +123,11 @@ def _has(token: str, keep_us: int, connection: Any) -> bool:
 
 
 def _leave(person: int, generation: int, connection: Any) -> None:
-    seats.leave(connection, person, generation)
+    seats.leave(connection, [(person, generation)])
 
 
 def _confirm(confirming: dict[int, int], connection: Any) -> None:
-    for person, generation in confirming.items():
-        seats.confirm(connection, person, generation)
+    seats.confirm(connection, list(confirming.items()))
 
 
 def _seats_of(persons: Collection[int], connection: Any) -> list[ClusterSeat]:

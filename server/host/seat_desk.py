@@ -5,6 +5,7 @@ each person, and what it tells comes back by a call. While the database is away 
 """
 
 import asyncio
+from collections import defaultdict
 from collections.abc import Callable
 from functools import partial
 from typing import Final
@@ -138,15 +139,20 @@ class SeatDesk:
     ) -> list[ClusterSeat]:
         if not self.keeps_all:
             seats.remove_vacant(connection, self._claim, self._keep_us)
+        # A statement for each person of a crowd would hold up the renewal of the lease.
+        alike: defaultdict[tuple[str, str], list[seats.Held]] = defaultdict(list)
         for person, (kind, generation, gateway) in changes.items():
+            alike[kind, gateway].append((person, generation))
+        for (kind, gateway), held in alike.items():
             if kind == VACATE:
-                seats.vacate(connection, person, generation)
+                seats.vacate(connection, held)
             elif kind == REOCCUPY:
-                seats.reoccupy(connection, person, generation, gateway)
+                seats.reoccupy(connection, held, gateway)
             elif kind == EXPEL:
-                seats.expel(connection, self._claim, person)
+                for person, _ in held:
+                    seats.expel(connection, self._claim, person)
             else:
-                seats.leave(connection, person, generation)
+                seats.leave(connection, held)
         if states:
             seats.keep_states(connection, self._claim, list(states.items()))
         return seats.seats_in(connection, self._claim.zone)

@@ -123,16 +123,16 @@ class Statements(RuleBasedStateMachine):
         (person, _), now = self._token(index), self.twin.now_us
         known = self.twin.seats.get(person)
         generation = 1 if known is None else known.generation - back
-        confirmed = self.ask(lambda to: seats.confirm(to, person, generation))
+        confirmed = self.ask(lambda to: seats.confirm(to, [(person, generation)]))
         assert confirmed == self.twin.confirm(person, generation)
         if index % 2:
-            left = self.ask(lambda to: seats.vacate(to, person, generation, now=now))
+            left = self.ask(lambda to: seats.vacate(to, [(person, generation)], now=now))
             assert left == self.twin.vacate(person, generation)
             if index % 5 == 0:
-                back_in = self.ask(lambda to: seats.reoccupy(to, person, generation, "east"))
+                back_in = self.ask(lambda to: seats.reoccupy(to, [(person, generation)], "east"))
                 assert back_in == self.twin.reoccupy(person, generation, "east")
         elif index % 3 == 0:
-            gone = self.ask(lambda to: seats.leave(to, person, generation))
+            gone = self.ask(lambda to: seats.leave(to, [(person, generation)]))
             assert gone == self.twin.leave(person, generation)
 
     @rule(index=indices)
