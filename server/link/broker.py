@@ -58,6 +58,8 @@ async def connected(
         None of the servers answers, or none lets this process in.
     """
 
+    latest = ""
+
     async def lost() -> None:
         if not ending:
             log.warning("broker lost", servers=list(servers))
@@ -75,7 +77,7 @@ async def connected(
         else:
             log.debug("broker failed", error=told)
 
-    client, ending, latest = Client(), False, ""
+    client, ending = Client(), False
     settings: dict[str, Any] = {
         "servers": list(servers),
         "name": name,
