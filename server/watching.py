@@ -4,6 +4,7 @@ from functools import partial
 
 from esplanade.actors import Outcome, Population
 from esplanade.server.console.console import Console
+from esplanade.server.console.gate import Gate
 from esplanade.server.metrics import Metrics
 from esplanade.server.net.door_commands import DoorCommands
 from esplanade.server.net.route_requests import RouteRequests
@@ -100,4 +101,18 @@ def watch_console(console: Console, doors: DoorCommands, metrics: Metrics) -> No
         "commands_in_turn",
         "Operators' lists of commands that are carried out or wait for their turn",
         lambda: console.waiting,
+    )
+
+
+def watch_gate(metrics: Metrics, gate: Gate) -> None:
+    """Tell in the metrics how many requests of operators wait, and how many came too soon."""
+    metrics.gauge(
+        "requests_under_way",
+        "Requests of operators that wait for the world",
+        lambda: gate.under_way,
+    )
+    metrics.total(
+        "commands_braked",
+        "Operators' commands, or lists of them, that came too soon",
+        lambda: gate.brakes.refused,
     )

@@ -52,7 +52,7 @@ class ClusterSeat:
     """The moment since which nobody steers; None while somebody does."""
     state: bytes = field(repr=False)
     """The record of the person, as it was written last."""
-    digests: tuple[bytes, ...] = field(default=(), repr=False)
+    digests: tuple[bytes, ...] = field(default=(), repr=False, compare=False)
     """SHA-256 of the tokens that take the seat, the newest last."""
 
 

@@ -12,7 +12,8 @@ from nats.aio.msg import Msg
 from esplanade.protocol import ByeCode, CloseCode, ErrorCode, ProtocolError
 from esplanade.protocol.messages import Bye, Error, Hello
 from esplanade.server.accounts.identity import Identity, digest_of
-from esplanade.server.cluster.person_record import PersonRecord, RecordError, decode_record
+from esplanade.server.cluster.person_record import PersonRecord
+from esplanade.server.cluster.seat_records import record_in
 from esplanade.server.cluster.seats import ClusterSeat
 from esplanade.server.gateway.cluster_seats import ClusterSeats
 from esplanade.server.gateway.occupant import Occupant
@@ -186,7 +187,7 @@ class Reception:
         seat, session.token = found
         session.name, session.resumes = seat.name, resumed
         now_s = asyncio.get_running_loop().time()
-        record = _record_of(seat)
+        record = record_in(seat)
         if resumed and record.account and session.operator is None:
             session.operator = await self._again(record)
         who = Occupant(seat.person, seat.generation, session, record, resumed, now_s)
@@ -391,7 +392,7 @@ class Reception:
                 there = await self.views.opened(seat.zone)
             except ProtocolError:
                 return  # it is tried again
-            who.record = _record_of(seat).model_copy(
+            who.record = record_in(seat).model_copy(
                 update={"muted": tuple(view.muted_by(who.person))}
             )
             view.hand_over(who)
@@ -419,11 +420,3 @@ def _account_of(session: Session) -> str:
     """The account of an operator who walks in as oneself; empty for everybody else."""
     operator = session.operator
     return "" if operator is None or operator.via != "pass" else operator.account or ""
-
-
-def _record_of(seat: ClusterSeat) -> PersonRecord:
-    try:
-        return decode_record(seat.state)
-    except RecordError as error:
-        log.warning("a seat cannot be read", person=seat.person, error=str(error))
-        return PersonRecord()

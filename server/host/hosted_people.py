@@ -13,12 +13,8 @@ from esplanade.planning import MovedEnd
 from esplanade.protocol import ErrorCode, ProtocolError
 from esplanade.protocol.messages import Notice, WalkTo
 from esplanade.server.cluster.occupations import Occupations
-from esplanade.server.cluster.person_record import (
-    PersonRecord,
-    RecordError,
-    decode_record,
-    encode_record,
-)
+from esplanade.server.cluster.person_record import PersonRecord, encode_record
+from esplanade.server.cluster.seat_records import record_in
 from esplanade.server.cluster.seats import ClusterSeat
 from esplanade.server.host.answering import Answering
 from esplanade.server.host.guests import Guests, HostedGuest, Telling
@@ -146,7 +142,7 @@ class HostedPeople:
                     self._pending.come(Detach(seat.person), Attach(seat.person, seat.generation))
             self._seats[seat.person] = seat
             if seat.person not in self._records:
-                self._records[seat.person] = _record_of(seat)
+                self._records[seat.person] = record_in(seat)
             is_known = seat.person in self._world.state or seat.person in self._moving
             if not is_known and seat.person not in self._joins:
                 self._join(seat)
@@ -305,11 +301,3 @@ class HostedPeople:
             self._joins[person] = Join(seat.generation, name, at, anywhere=True, id=person)
         else:
             self._remove(person)
-
-
-def _record_of(seat: ClusterSeat) -> PersonRecord:
-    try:
-        return decode_record(seat.state)
-    except RecordError as error:
-        log.warning("a seat cannot be read", person=seat.person, error=str(error))
-        return PersonRecord()

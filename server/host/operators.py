@@ -29,6 +29,7 @@ from esplanade.server.live.metrics import watch_live
 from esplanade.server.metrics import Metrics
 from esplanade.server.net.asgi import MAX_BODY_BYTES
 from esplanade.server.settings import ServerSettings
+from esplanade.server.watching import watch_gate
 
 
 class HostOperators:
@@ -71,16 +72,7 @@ async def host_operators(
     callers = IntroducedCallers(kept.tokens, kept.sessions, kept.directory.again)
     brakes = Brakes(settings.operator_commands)
     gate = Gate(callers, kept, asyncio.get_running_loop(), brakes=brakes)
-    metrics.gauge(
-        "requests_under_way",
-        "Requests of operators that wait for the world",
-        lambda: gate.under_way,
-    )
-    metrics.total(
-        "commands_braked",
-        "Operators' commands, or lists of them, that came too soon",
-        lambda: brakes.refused,
-    )
+    watch_gate(metrics, gate)
     watch_live(metrics, lambda: [each.live for each in gate.zones.values()])
     opened: Future[tuple[CallsIn, asyncio.AbstractEventLoop, Callable[[], object]]] = Future()
     serve = partial(_serve, gate, subjects, broker_of, opened)

@@ -23,7 +23,7 @@ from esplanade.server.live.tap import Tap
 from esplanade.server.metrics import Metrics
 from esplanade.server.net.actor_planning import ActorPlanning
 from esplanade.server.net.ground_work import GroundWork
-from esplanade.server.net.schedule import Schedule
+from esplanade.server.net.schedule import Schedule, came_by
 from esplanade.server.world.frame import Frame
 from esplanade.server.world.inputs import Input, Still
 from esplanade.server.world.zone import Zone
@@ -92,10 +92,10 @@ class HostTicker:
             now, due = loop.time(), self._schedule.next_deadline
             if not pace.stands and due > now:
                 # A slow world is asked no less often, and another pace holds at once.
-                await self._stopped_by(min(due, now + tick_s))
+                await came_by(self._stopping, min(due, now + tick_s))
                 self._console.answer()
                 continue
-            if pace.stands and await self._stopped_by(now + tick_s):
+            if pace.stands and await came_by(self._stopping, now + tick_s):
                 break
             await self._renewal.certain()
             if not self._renewal.tenure.holds:
@@ -104,14 +104,6 @@ class HostTicker:
                 await self._attend(sender)
             else:
                 await self._tick(sender)
-
-    async def _stopped_by(self, deadline: float) -> bool:
-        try:
-            async with asyncio.timeout_at(deadline):
-                await self._stopping.wait()
-        except TimeoutError:
-            pass
-        return self._stopping.is_set()
 
     async def _attend(self, sender: FrameSender) -> None:
         """Take in what came to a world that stands, in a tick in which nobody moves, if need be."""

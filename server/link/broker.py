@@ -28,6 +28,8 @@ PING_S: Final = 1
 PINGS_UNANSWERED: Final = 2
 """A broker is given up when so many pings are unanswered."""
 CONNECT_S: Final = 5
+CLOSE_S: Final = 1.0
+"""A connection that was not made is not waited for any longer when it is given up."""
 PENDING_BYTES: Final = 2 * 1024 * 1024
 """The most bytes that wait for a broker that does not read; beyond them nothing is sent."""
 
@@ -36,6 +38,8 @@ Connecting = AbstractAsyncContextManager[Client]
 
 log = structlog.get_logger(__name__)
 _FORBIDDEN: Final = "permissions violation"
+_REFUSED: Final = "authorization"
+"""Words by which the library's errors of these kinds are known."""
 
 
 class BrokerError(ConnectionError):
@@ -54,6 +58,8 @@ async def connected(
         None of the servers answers, or none lets this process in.
     """
 
+    latest = ""
+
     async def lost() -> None:
         if not ending:
             log.warning("broker lost", servers=list(servers))
@@ -65,7 +71,10 @@ async def connected(
         log.info("broker back", server=server())
 
     async def failed(error: Exception) -> None:
+        nonlocal latest
         told = str(error) or type(error).__name__
+        if _REFUSED not in latest.lower():
+            latest = told
         if _FORBIDDEN in told.lower():
             log.warning("the broker forbids this", error=told)
         else:
@@ -90,9 +99,12 @@ async def connected(
         # The library would go on trying for ever here as well.
         await asyncio.wait_for(client.connect(**settings), CONNECT_S)
     except (TimeoutError, OSError, NatsError) as error:
-        await client.close()
+        with suppress(TimeoutError, NatsError, OSError):
+            async with asyncio.timeout(CLOSE_S):
+                await client.close()
         places = ", ".join(servers)
-        raise BrokerError(f"no NATS server answers at {places}: {_why(error)}") from None
+        why = _why(str(error) or latest or "too late")
+        raise BrokerError(f"no NATS server answers at {places}: {why}") from None
     log.info("broker there", server=server())
     try:
         yield client
@@ -109,9 +121,8 @@ def broker_for(
     return partial(connected, servers, name, login)
 
 
-def _why(error: Exception) -> str:
-    """The reason for which there is no connection, in words."""
-    text = str(error) or "too late"
-    if "authorization" in text.lower():
+def _why(text: str) -> str:
+    """The reason for which there is no connection, with what helps."""
+    if _REFUSED in text.lower():
         return f"{text}: give --nats-login, or {USER_VARIABLE} and {PASSWORD_VARIABLE}"
     return text

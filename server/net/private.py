@@ -27,6 +27,7 @@ from esplanade.server.net.asgi import MAX_BODY_BYTES
 from esplanade.server.net.health import UNCACHED, Figures, add_health, served_beside
 from esplanade.server.net.tls import Tls
 from esplanade.server.settings import ServerSettings
+from esplanade.server.watching import watch_gate
 
 
 class Ready(Protocol):
@@ -66,16 +67,7 @@ async def private_port(
     OSError
         The address cannot be had.
     """
-    metrics.gauge(
-        "requests_under_way",
-        "Requests of operators that wait for the world",
-        lambda: gate.under_way,
-    )
-    metrics.total(
-        "commands_braked",
-        "Operators' commands, or lists of them, that came too soon",
-        lambda: gate.brakes.refused,
-    )
+    watch_gate(metrics, gate)
     metrics.total(
         "origins_refused",
         "Requests of operators that were refused for their page or the name of the port",

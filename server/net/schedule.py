@@ -1,5 +1,6 @@
 """The schedule says when the next tick is due, without drift and with few ticks to catch up."""
 
+import asyncio
 from typing import Final
 
 from esplanade.server.world.pace import Pace
@@ -68,3 +69,13 @@ class Schedule:
         """
         left_s = (self._next - now) * self._rate if self._left_s is None else self._left_s
         return (tick + 1) * self._period_s - left_s
+
+
+async def came_by(event: asyncio.Event, deadline: float) -> bool:
+    """Wait for an event until that time of the loop; returns whether it has come."""
+    try:
+        async with asyncio.timeout_at(deadline):
+            await event.wait()
+    except TimeoutError:
+        pass
+    return event.is_set()

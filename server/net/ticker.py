@@ -17,7 +17,7 @@ from esplanade.server.net.ground_work import GroundWork
 from esplanade.server.net.hub import Hub
 from esplanade.server.net.long_lived import LongLived
 from esplanade.server.net.persistence import Persistence
-from esplanade.server.net.schedule import Schedule
+from esplanade.server.net.schedule import Schedule, came_by
 from esplanade.server.trajectories.keeping import WorldTrajectories
 from esplanade.server.world.actor_travel import ActorTravel
 from esplanade.server.world.audience import Audience
@@ -112,22 +112,14 @@ class Ticker:
         while not self._stopping.is_set():
             now, due = loop.time(), self._schedule.next_deadline
             if self._schedule.pace.stands:
-                if not await self._stopped_by(now + tick_s):
+                if not await came_by(self._stopping, now + tick_s):
                     await self._attend()
             elif due > now:
                 # A slow world is asked no less often, and another pace holds at once.
-                await self._stopped_by(min(due, now + tick_s))
+                await came_by(self._stopping, min(due, now + tick_s))
                 self._console.answer()
             else:
                 await self._tick()
-
-    async def _stopped_by(self, deadline: float) -> bool:
-        try:
-            async with asyncio.timeout_at(deadline):
-                await self._stopping.wait()
-        except TimeoutError:
-            pass
-        return self._stopping.is_set()
 
     async def _attend(self) -> None:
         """Take in what came to a world that stands, in a tick in which nobody moves, if need be."""

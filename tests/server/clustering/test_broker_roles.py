@@ -21,7 +21,7 @@ from tests.server.clustering.people import sees, walk
 from tests.server.databases import PostgresqlServer, new_database
 from tests.server.zones import BEFORE_GATE
 
-PASSWORDS = {"zone": "a secret of hosts", "gateway": "a secret of gateways"}
+PASSWORDS = {"zone": "secretOfHosts1", "gateway": "secretOfGateways2"}
 CONFIGURATION = ROOT / "deploy/nats/esplanade.conf"
 PLACE = (6.0, 10.0, 0)
 SUBJECTS = Subjects("town-1")
