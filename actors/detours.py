@@ -37,7 +37,9 @@ GAIN_S: Final = 0.5
 AROUND_M: Final = 1.5
 """A way beside somebody that is longer by no more than this is left to the search."""
 STALLED_S: Final = 1.5
-"""An actor that has not got on for so long is led around whoever stands in its way at all."""
+STALLED_M: Final = 6.0
+"""An actor that has not got on for so long is led around whoever stands in its way at all, no
+further ahead than this: those beyond hold nobody up here."""
 STUCK_S: Final = 2.5
 """For an actor that has not got on for so long the gaps beside those who stand near are shut."""
 NEAR_M: Final = 2.5
@@ -203,7 +205,8 @@ class Detours:
         shut = self._shut_by(table, row, own_row, discs, AROUND_M)
         trips.shut[row] = shut.any()
         if trips.stalled_s[row] >= STALLED_S and not shut.any():
-            shut = self._shut_by(table, row, own_row, discs, 0.0)
+            here = away <= STALLED_M
+            shut[here] = self._shut_by(table, row, own_row, discs[here], 0.0)
         found, narrow = {disc_of(disc) for disc in discs[shut]}, set[Disc]()
         near = np.zeros(len(discs), dtype=np.bool_)
         if trips.stalled_s[row] >= STUCK_S:

@@ -444,7 +444,14 @@ class Navigator:
             else:
                 self.tracing.forget()
             due = self.planning_interval.due(agents.ranks)
-            self._batch.tick(agents, self.potentials.arrays, self._prediction, self.tick_s, due)
+            self._batch.tick(
+                agents,
+                self.potentials.arrays,
+                self._prediction,
+                self.tick_s,
+                due,
+                self.table.trips.stalled_s,
+            )
             self._batch.settle(self._prediction, self.tick_s)
             self.planning_interval.count += 1
             self._wait_for_potentials()

@@ -86,6 +86,8 @@ NAMES: Final = (
     "rules.dodge_cells",
     "rules.narrow_part",
     "rules.narrow_over_s",
+    "rules.narrow_held_s",
+    "rules.narrow_alone_m",
     "rules.narrow_pace",
     "rules.perturbs",
     "rules.shortest_stretch",

@@ -11,6 +11,7 @@ from esplanade.planning.agents._bottleneck_kernels import lane_of, see_passage
 from esplanade.planning.agents._branch_kernels import Moves
 from esplanade.planning.agents._cost_kernels import Near
 from esplanade.planning.agents._narrow_way_kernels import (
+    is_held_alone,
     lead_over_anchors,
     leads_nowhere,
     leads_over_edges,
@@ -155,6 +156,7 @@ def decide(
     prediction: Prediction,
     agents: Agents,
     due: NDArray[np.bool_],
+    stalled_s: NDArray[np.float64],
     tick_s: float,
     first: int,
     last: int,
@@ -165,7 +167,8 @@ def decide(
 
     Actors that are not `due` (A,) go on along their followed paths; those without one, with one
     that is illegal soon, or inside something, are planned in any tick. Followed paths, seen from
-    now, are `world.reservations.paths`. The actors are first..last of those listed by their places
+    now, are `world.reservations.paths`. For `stalled_s` (A,) s each has come no nearer to its goal.
+    The actors are first..last of those listed by their places
     now: neighbours look at the same ground and people, which stay in the cache. The speeds of
     `moves` are parts of each actor's own.
     """
@@ -211,11 +214,13 @@ def decide(
         path = out.paths[a]
         need = needed_clearance(world, task)
         narrow = False
+        held = is_held_alone(world, agents, a, stalled_s[a])
         if slot >= 0 and (
             leads_over_edges(world, potential, task, path)
-            or leads_nowhere(world, potential, task, path, room.cells)
+            or leads_nowhere(world, potential, task, path, room.cells, held)
         ):
-            narrow, ux, uy = lead_over_anchors(world, potential, task, p["edge_cells"], path, bent)
+            most_edges = p["edge_cells"]
+            narrow, ux, uy = lead_over_anchors(world, potential, task, most_edges, path, bent, held)
         if narrow:  # the followed path stays: this one is found anew in every tick
             path[:] = bent
             status = FOUND

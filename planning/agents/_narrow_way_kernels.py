@@ -20,8 +20,15 @@ from esplanade.planning.agents._task_kernels import (
     further_on_edges,
     needed_clearance,
 )
+from esplanade.planning.agents.agents import Agents
 from esplanade.planning.compiled.jit import inlined, kernel
-from esplanade.planning.grid._grid_kernels import GridArrays, follow, follow_path, length
+from esplanade.planning.grid._grid_kernels import (
+    GridArrays,
+    anchor_at,
+    follow,
+    follow_path,
+    length,
+)
 from esplanade.planning.routes._anchor_way_kernels import anchors_ahead, leads_exactly
 from esplanade.planning.routes._legal_way_kernels import legal_ahead
 from esplanade.planning.routes._potential_kernels import EDGES, PotentialValues, potential_at
@@ -30,6 +37,11 @@ _MOST_POINTS = 24
 """Points that are looked ahead over: some three metres."""
 _LESS_M = 0.015
 """A line of sight may pass barriers by this much too closely: the body slides along them."""
+_HELD_UP_M = 0.001
+"""A body that barriers hold up is nearer to them than allowed, by no more than this."""
+_RINGS = 3
+_MOST_NEAR = (2 * _RINGS + 1) ** 2
+"""A way begins at an anchor no further away than so many cells."""
 _BRAKING_SLICES = 5
 """An agent slows down within so many slices from where a way over edges turns."""
 _EVERY = 2
@@ -50,15 +62,17 @@ def leads_nowhere(
     task: Task,
     path: NDArray[np.float64],
     cells: NDArray[np.int64],
+    held: bool,
 ) -> bool:
-    """Whether an agent stands, or a path (K, 2) hardly brings it nearer to its goal.
+    """Whether an agent stands, has been held up for a while, or a path (K, 2) hardly brings it
+    nearer to its goal.
 
     `cells` (K,) is room. It is false for an agent that stays around, or that no path leads to.
     """
     left_m = potential_at(potential, task.cell, task.x, task.y)
     if task.hold or not np.isfinite(left_m):
         return False
-    if _stands(world, task):
+    if held or _stands(world, task):
         return True
     last = len(path) - 1
     far_m = task.speed_mps * last * world.step_s / SUB
@@ -68,6 +82,23 @@ def leads_nowhere(
     follow_path(world.grid, path, cells, 0, last)
     then_m = potential_at(potential, cells[last], path[last, 0], path[last, 1])
     return bool(not left_m - then_m >= world.rules[0]["narrow_part"] * min(left_m, far_m))
+
+
+@kernel
+def is_held_alone(world: World, agents: Agents, me: int, stalled_s: float) -> bool:
+    """Whether an agent has come no nearer to its goal for a while, and no other one is near.
+
+    It may have slid into a gap that is just too narrow. O(agents), for those who are held up.
+    """
+    rules = world.rules[0]
+    if stalled_s < rules["narrow_held_s"]:
+        return False
+    x, y = agents.positions[me]
+    for other in range(len(agents.positions)):
+        ox, oy = agents.positions[other]
+        if other != me and length(ox - x, oy - y) < rules["narrow_alone_m"]:
+            return False
+    return True
 
 
 @kernel
@@ -95,17 +126,20 @@ def lead_over_anchors(
     most_edges: float,
     path: NDArray[np.float64],
     out: NDArray[np.float64],
+    held: bool,
 ) -> tuple[bool, float, float]:
     """Fill `out` (K, 2) with a path over anchors; whether it is better than a given path (K, 2).
 
     If so, the velocity to aim at is returned too: it leads straight to the first point of the way
     that cannot be cut short. Where cells on edges are counted, the way has fewer than `most_edges`,
-    and is better if nobody is nearer to it.
+    and is better if nobody is nearer to it. For an agent that is `held` up by barriers alone, lines
+    are exact, and the way is better if nobody is near: the given path is not gone at all.
     """
     rules = world.rules[0]
     points = np.empty((_MOST_POINTS, 2))
     cells = np.empty(_MOST_POINTS, dtype=np.int64)
-    count, _ = anchors_ahead(world.grid, potential, task.body, task.cell, points, cells)
+    begin = _cell_to_begin_at(world, potential, task) if held else task.cell
+    count, _ = anchors_ahead(world.grid, potential, task.body, begin, points, cells)
     counts = np.zeros(_MOST_POINTS)
     counted = False
     for cell in cells[:count]:
@@ -133,7 +167,7 @@ def lead_over_anchors(
     first = count
     edges = TOO_MANY
     while edges == TOO_MANY and first > nearest and (counted or first == count):
-        first = _last_to_go_to(world, task, points, counts, counted, nearest, first)
+        first = _last_to_go_to(world, task, points, counts, counted, nearest, first, held)
         if counted:
             slice_m = _slice_toward(world, task, points[first])
         _walk_along(task.x, task.y, points[first:count], slice_m, out)
@@ -148,6 +182,7 @@ def lead_over_anchors(
     cost = path_cost(world, potential, task, out, near)
     # The potential ahead of the given path does not know how long the agent was on edges.
     calm = counted and cost.mean_risk <= most.mean_risk + rules["least_risk"]
+    calm = calm or (held and max(cost.mean_risk, most.mean_risk) <= rules["least_risk"])
     if not (cost.seconds < most_s or calm):
         return False, 0.0, 0.0
     px, py = points[first]
@@ -158,6 +193,51 @@ def lead_over_anchors(
     else:
         ux, uy = control_toward(task, out[SUB, 0], out[SUB, 1], world.step_s)
     return True, ux, uy
+
+
+@kernel
+def _goes_to(world: World, task: Task, x: float, y: float, less_m: float) -> bool:
+    """Whether barriers let an agent go straight to a point, if it is smaller by `less_m`."""
+    return bool(leads_exactly(world.grid, task.body, task.cell, task.x, task.y, x, y, less_m))
+
+
+@kernel
+def _cell_to_begin_at(world: World, potential: PotentialValues, task: Task) -> int:
+    """The cell over whose anchor a way to the goal begins for an agent: its own, if it gets there.
+
+    A point of a cell may be cut off from the cell's anchor by a gap that is just too narrow. From
+    there the way begins at the anchor near by, of those that the agent gets to, from which the goal
+    is nearest; without any it is that of its own cell.
+    """
+    ax, ay = anchor_at(world.grid, task.body, task.cell)
+    if _goes_to(world, task, ax, ay, _HELD_UP_M):
+        return task.cell
+    links = world.grid.layered.links
+    seen = np.empty(_MOST_NEAR, dtype=np.int64)
+    seen[0] = task.cell
+    first, last = 0, 1
+    best = task.cell
+    least_m = np.inf
+    for _ in range(_RINGS):
+        end = last
+        for k in range(first, last):
+            for direction in range(8):
+                other = links[seen[k], direction]
+                known = other < 0 or end == _MOST_NEAR
+                for j in range(end):
+                    known = known or seen[j] == other
+                if known:
+                    continue
+                seen[end] = other
+                end += 1
+                ax, ay = anchor_at(world.grid, task.body, other)
+                left_m = potential_at(potential, other, ax, ay)
+                left_m += length(ax - task.x, ay - task.y)
+                if left_m < least_m and _goes_to(world, task, ax, ay, _HELD_UP_M):
+                    best = other
+                    least_m = left_m
+        first, last = last, end
+    return best
 
 
 @inlined
@@ -178,16 +258,18 @@ def _last_to_go_to(
     counted: bool,
     nearest: int,
     end: int,
+    exactly: bool,
 ) -> int:
     """The furthest point before `end` that an agent may go to straight; `nearest` without any.
 
     If cells on edges are `counted`, it may have come no further on them than by the way.
     """
+    less_m = _HELD_UP_M if exactly else _LESS_M
     for k in range(end - 1, nearest, -1):
         px, py = points[k]
-        if leads_exactly(
-            world.grid, task.body, task.cell, task.x, task.y, px, py, _LESS_M
-        ) and not (counted and _exceeds(world.grid, task, px, py, counts[: k + 1])):
+        if _goes_to(world, task, px, py, less_m) and not (
+            counted and _exceeds(world.grid, task, px, py, counts[: k + 1])
+        ):
             return k
     return nearest
 

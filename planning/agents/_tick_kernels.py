@@ -24,7 +24,8 @@ from esplanade.planning.people._risk_kernels import index_people
 class Zone(NamedTuple):
     """Everything that the ticks of a zone work on, except for people's future.
 
-    `due` (A,) tells whose paths are planned in a tick; `order` (A,) and `decisions` are written
+    `due` (A,) tells whose paths are planned in a tick, and `stalled_s` (A,) s for how long each has
+    come no nearer to its goal; `order` (A,) and `decisions` are written
     anew in every one; `positions` (A, 2) and `cells` (A,) are those after it.
     """
 
@@ -35,6 +36,7 @@ class Zone(NamedTuple):
     moves: Moves
     agents: Agents
     due: NDArray[np.bool_]
+    stalled_s: NDArray[np.float64]
     order: NDArray[np.int64]
     decisions: Decisions
     positions: NDArray[np.float64]
@@ -104,6 +106,7 @@ def decide_some(
         prediction,
         z.agents,
         z.due,
+        z.stalled_s,
         tick_s,
         first,
         last,

@@ -99,6 +99,7 @@ def zone() -> kernels.Zone:
         compass_moves(),
         AgentTable(1).agents,
         flags,
+        _array(1),
         integers,
         decisions,
         places,

@@ -159,6 +159,7 @@ class Batch:
             self._moves,
             agents,
             np.ones(actors, dtype=np.bool_),
+            np.zeros(actors),
             np.empty(actors, dtype=np.int64),
             Decisions(
                 np.empty((actors, slices, 2)),
@@ -182,6 +183,7 @@ class Batch:
         prediction: Prediction,
         tick_s: float,
         due: NDArray[np.bool_] | None = None,
+        stalled_s: NDArray[np.float64] | None = None,
     ) -> tuple[Decisions, NDArray[np.float64], NDArray[np.int64]]:
         """Decide for everyone and take the step.
 
@@ -192,6 +194,7 @@ class Batch:
         prediction : people's future, as many slices as the plan has
         tick_s : length of the tick, seconds
         due : bool (A,), whose paths are planned; the others follow those that they have
+        stalled_s : float64 (A,), seconds for which each has come no nearer to its goal; None for 0
 
         Returns
         -------
@@ -204,10 +207,11 @@ class Batch:
         if not all(map(is_, parts, self._made_of)):
             self._hand_over(agents, potentials, prediction, tick_s)
         whose: NDArray[np.bool_] | bool = True if due is None else due
-        self._zone.due[:] = whose
+        long_s: NDArray[np.float64] | float = 0.0 if stalled_s is None else stalled_s
+        self._zone.due[:], self._zone.stalled_s[:] = whose, long_s
         if not self._plan_and_step(threads, prediction, tick_s):
             self._hand_over(agents, potentials, prediction, tick_s)
-            self._zone.due[:] = whose
+            self._zone.due[:], self._zone.stalled_s[:] = whose, long_s
             self._plan_and_step(threads, prediction, tick_s)
         return self._zone.decisions, self._zone.positions, self._zone.cells
 

@@ -507,6 +507,28 @@ class RuleModel(BaseModel):
             "which may lead where it cannot follow, or put off the start from tick to tick.",
         ),
     ] = 0.6
+    narrow_held_s: Annotated[
+        float,
+        _rule(
+            "search",
+            "s",
+            0.0,
+            1000.0,
+            "An actor that has come no nearer to its goal for so long, with nobody near, may have "
+            "slid into a gap that is just too narrow: it goes over anchors, by lines that "
+            "barriers leave exactly free.",
+        ),
+    ] = 1.0
+    narrow_alone_m: Annotated[
+        float,
+        _rule(
+            "search",
+            "m",
+            0.0,
+            1000.0,
+            "With another actor nearer than this, it may be held up by that one instead.",
+        ),
+    ] = 3.0
     narrow_pace: Annotated[
         float,
         _rule(

@@ -17,6 +17,8 @@ AHEAD_M = 30.0
 """Bodies further ahead than this are no concern yet."""
 BESIDE_M = 2.0
 """A way around bodies leaves the route, and comes back to it, this far from them."""
+TOUCH_M = 1e-3
+"""A body that nobody is to touch is smaller by this than one that they just touch."""
 AROUND_M = 4.5
 """A way around bodies is looked for within this distance of them."""
 
@@ -98,6 +100,20 @@ def _sample_route(
     return count
 
 
+@inlined
+def _take_anew(
+    grid: GridArrays,
+    count: int,
+    bodies: NDArray[np.float64],
+    room_m: float,
+    space: LookingSpace,
+) -> None:
+    """Tell which samples of the route are taken, once bodies are others than before."""
+    for k in range(count):
+        x, y = space.samples[k]
+        space.taken[k] = _taken_by(bodies, room_m, x, y, floor_of(grid, space.cells[k])) >= 0
+
+
 @kernel
 def _without_takers(
     grid: GridArrays,
@@ -114,10 +130,31 @@ def _without_takers(
     while taker >= 0:
         others[taker, 3] = -room_m
         taker = _taken_by(others, room_m, x, y, floor_m)
-    for k in range(count):
-        x, y = space.samples[k]
-        floor_m = floor_of(grid, space.cells[k])
-        space.taken[k] = _taken_by(others, room_m, x, y, floor_m) >= 0
+    _take_anew(grid, count, others, room_m, space)
+    return others
+
+
+@kernel
+def _touching_none(
+    grid: GridArrays,
+    count: int,
+    bodies: NDArray[np.float64],
+    room_m: float,
+    space: LookingSpace,
+) -> NDArray[np.float64]:
+    """The bodies, those that touch the begin of the route just so small that they do not.
+
+    Whoever stands so near to somebody can still leave them, and go around them.
+    """
+    others = bodies.copy()
+    x, y = space.samples[0]
+    floor_m = floor_of(grid, space.cells[0])
+    taker = _taken_by(others, room_m, x, y, floor_m)
+    while taker >= 0:
+        away_m = length(others[taker, 0] - x, others[taker, 1] - y)
+        others[taker, 3] = max(away_m - TOUCH_M, 0.0) - room_m
+        taker = _taken_by(others, room_m, x, y, floor_m)
+    _take_anew(grid, count, others, room_m, space)
     return others
 
 
@@ -205,6 +242,8 @@ def look_along(
     if cell < 0:
         return
     count = _sample_route(grid, potential, cell, x, y, bodies, room_m, space)
+    if space.taken[0]:
+        bodies = _touching_none(grid, count, bodies, room_m, space)
     if count < len(space.samples) and space.taken[count - 1]:
         bodies = _without_takers(grid, count, bodies, room_m, space)
     beside = int(BESIDE_M / SAMPLE_M)
@@ -220,6 +259,8 @@ def look_along(
         if k >= count:  # up to the goal, or to where nobody looks yet
             break
         start = max(0, first - beside)
+        while space.taken[start]:  # by those of the last look
+            start += 1
         end = min(count - 1, k + beside)
         while space.taken[end] and end > k:
             end -= 1

@@ -38,6 +38,13 @@ def test_an_actor_gets_through_a_passage_hardly_wider_than_it(number, degrees, a
     assert four.actor(LayeredGrid.from_scene(case.scene), case)
 
 
+def test_an_actor_comes_out_of_a_gap_that_is_just_too_narrow() -> None:
+    """At its mouth an actor is in a cell that belongs to the other side, where the goal is near."""
+    plan = random_plan(np.random.default_rng([11, 338]))
+    case = plan.turned(Turn(72.0, (0.198597, 0.228605)))
+    assert four.actor(LayeredGrid.from_scene(case.scene), case, back=False)
+
+
 def two_flights(turn: Turn, width_m: float) -> Case:
     """Two flights side by side, with a landing between them, up to a floor."""
     aside, steps = 0.5 * width_m + 0.05, 8

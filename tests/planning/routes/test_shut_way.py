@@ -71,6 +71,27 @@ def test_bodies_beside_the_route_or_upstairs_shut_nothing() -> None:
     assert shut_by(doorway(0.5), (2.0, 8.0, 0.0, 0.4), (5.0, 5.0, 3.0, 0.4)) == [False, False]
 
 
+@pytest.mark.parametrize("behind_m", [1.6, 2.0, 2.5, 3.0])
+def test_two_bodies_one_behind_the_other_in_the_open_shut_nothing(behind_m: float) -> None:
+    """The way around the second begins where the first stands."""
+    grid = LayeredGrid.from_scene(Scene.open_space((0.0, 0.0, 40.0, 10.0)))
+    bodies = (12.0, 5.0, 0.0, 0.5), (12.0 + behind_m, 5.05, 0.0, 0.5)
+    assert shut_by(grid, *bodies, goal=(30.0, 5.0)) == [False, False]
+
+
+@pytest.mark.parametrize("away_m", [0.0, 0.2, 0.5, 0.7])
+def test_a_body_that_one_touches_in_the_open_shuts_nothing(away_m: float) -> None:
+    grid = LayeredGrid.from_scene(Scene.open_space((0.0, 0.0, 40.0, 10.0)))
+    body = START[0] + away_m, START[1] + 0.1, 0.0, 0.5
+    assert shut_by(grid, body, goal=(30.0, 5.0)) == [False]
+
+
+def test_a_doorway_is_shut_by_who_stands_in_it_though_one_touches_them() -> None:
+    walls = tuple(Wall(start=(2.5, a), end=(2.5, b)) for a, b in ((0.0, 4.5), (5.5, 10.0)))
+    grid = LayeredGrid.from_scene(Scene(bounds=(0.0, 0.0, 10.0, 10.0), walls=walls))
+    assert shut_by(grid, (2.5, 5.0, 0.0, 0.4)) == [True]
+
+
 def test_a_goal_that_is_taken_shuts_no_way() -> None:
     assert shut_by(doorway(0.5), (8.0, 5.0, 0.0, 0.4)) == [False]
 
