@@ -13,6 +13,7 @@ from esplanade.planning.agents._task_kernels import (
     Task,
     World,
     count_edges,
+    is_there,
     metres_left,
     needed_clearance,
     risk_price,
@@ -208,14 +209,14 @@ def path_cost(
     vy = task.vy
     cost = 0.0
     risk = 0.0
-    left_m = 0.0
+    left_m = metres_left(potential, task, cell, task.x, task.y)
     edges = task.on_edges
     legal_steps = 0
     steps = (len(path) - 1) // SUB
     for step in range(steps):
         k = step * SUB
         parts = step_parts(world, potential, task, path, step, cell, vx, vy, near)
-        price = risk_price(task, step * world.step_s) * ds
+        price = risk_price(task, step * world.step_s, left_m) * ds
         cost += parts.seconds + parts.turning + parts.wall + price * (parts.soft + parts.risk)
         risk += parts.risk
         left_m = parts.left_m
@@ -328,7 +329,7 @@ def _arrival(
     if not task.hold:
         for k in range(1, last):
             left_m = metres_left(potential, task, cells[k], path[k, 0], path[k, 1])
-            if left_m <= task.goal_tolerance_m:
+            if is_there(task, left_m):
                 return k
     return last
 

@@ -171,16 +171,18 @@ def lay_known(
     vx, vy = task.vx, task.vy
     cost = 0.0
     edges = task.on_edges
+    left_m = metres_left(potential, task, cell, task.x, task.y)
     for n in range(1, steps + 1):
         k = n * SUB
         parts = step_parts(world, potential, task, path, n - 1, cell, vx, vy, workspace.near)
-        price = risk_price(task, (n - 1) * world.step_s) * ds
+        price = risk_price(task, (n - 1) * world.step_s, left_m) * ds
         cost += parts.seconds + parts.turning + parts.wall + price * (parts.soft + parts.risk)
         x, y = path[k, 0], path[k, 1]
         hx, hy = path[k - 1, 0], path[k - 1, 1]
         dx, dy = x - path[k - 2, 0], y - path[k - 2, 1]
         edges = count_edges(world.grid, potential, task, cell, parts.end, dx, dy, edges)
         cell = parts.end
+        left_m = parts.left_m
         vx, vy = (x - hx) / ds, (y - hy) / ds
         _set_node(workspace, n, x, y, vx, vy, hx, hy, cost)
         workspace.node_cell[n] = cell
@@ -312,7 +314,7 @@ def search(
         if not moves.relative or leg <= 1e-9:
             gx = 1.0
             gy = 0.0
-        price = risk_price(task, step * step_s) * ds
+        price = risk_price(task, step * step_s, away) * ds
         k = step * SUB
         counts = NOT_COUNTED
         before_x = vx if n == 0 else (x - node[n]["half_x"]) / ds

@@ -157,20 +157,32 @@ def count_edges(
 
 
 @inlined
+def is_there(task: Task, left_m: float) -> bool:
+    """Whether an actor with so many metres left is at its goal: there its trip ends."""
+    return bool(not task.hold and left_m <= task.goal_tolerance_m)
+
+
+@inlined
 def time_cost(task: Task, left_m: float, speed: float, seconds: float) -> float:
     """Seconds that a stretch is worth: its time, more when faster than preferred, none while
     standing at the goal."""
     if task.hold:
         return seconds * (speed / task.speed_mps + 0.5 * min(1.0, left_m))
-    if speed < 0.2 and left_m <= task.goal_tolerance_m:
+    if speed < 0.2 and is_there(task, left_m):
         return seconds * speed
     over = max(0.0, speed * (1.0 / task.speed_mps) - 1.0)
     return seconds * (1.0 + over + task.hurry_weight * over * over)
 
 
 @inlined
-def risk_price(task: Task, seconds_ahead: float) -> float:
-    """Weight of risk at a time ahead. It fades, since the path far ahead will be decided anew."""
+def risk_price(task: Task, seconds_ahead: float, left_m: float) -> float:
+    """Weight of risk in a step that begins at a time ahead, with so many metres left.
+
+    It fades, since the path far ahead will be decided anew. A step that begins at the goal has no
+    risk: the trip has ended there, and whoever comes later is evaded then.
+    """
+    if is_there(task, left_m):
+        return 0.0
     return float(task.risk_weight * np.exp(-seconds_ahead / task.foresight_s))
 
 

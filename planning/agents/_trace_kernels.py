@@ -10,6 +10,8 @@ from esplanade.planning.agents._task_kernels import (
     SUB,
     Task,
     World,
+    is_there,
+    metres_left,
     risk_price,
     way_left,
 )
@@ -79,7 +81,7 @@ def _price(
     cell = task.cell
     vx = task.vx
     vy = task.vy
-    left_m = 0.0
+    left_m = metres_left(potential, task, cell, task.x, task.y)
     bare_m = 0.0
     places[0, 2] = floor_of(grid, cell)
     for step in range((len(path) - 1) // SUB):
@@ -87,13 +89,13 @@ def _price(
         parts = step_parts(world, potential, task, path, step, cell, vx, vy, near)
         for s, on in ((1, parts.half), (2, parts.end)):
             places[k + s, 2] = floor_of(grid, on) if on >= 0 else places[k + s - 1, 2]
+        price = risk_price(task, step * world.step_s, left_m) * ds
         left_m = parts.left_m
         ex, ey = path[k + 2]
         bare_m = left_m if task.hold else potential_at(potential, parts.end, ex, ey)
-        price = risk_price(task, step * world.step_s) * ds
         speed = length(ex - path[k, 0], ey - path[k, 1]) / world.step_s
         hurried = 0.0
-        if not (task.hold or (speed < 0.2 and left_m <= task.goal_tolerance_m)):
+        if not (task.hold or (speed < 0.2 and is_there(task, left_m))):
             hurried = parts.seconds - world.step_s
         out[TIME] += parts.seconds - hurried
         out[HURRY] += hurried

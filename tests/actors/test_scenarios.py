@@ -110,6 +110,19 @@ def test_a_person_who_stands_in_the_way_is_walked_around() -> None:
     assert record.arrival_s("a") < straight_s((2.0, 6.0), (14.0, 6.0)) + 3.0
 
 
+@pytest.mark.parametrize(
+    ("way", "speed_mps", "there_s"),
+    [(((13.0, 6.0), (2.0, 6.0)), 0.8, 6.25), (((12.0, 10.0), (2.0, 0.0)), 1.0, 5.66)],
+)
+def test_a_person_who_will_come_to_the_goal_keeps_nobody_from_it(way, speed_mps, there_s) -> None:
+    """An actor that is there first has arrived first, and need not wait until the other is past."""
+    person = along(*way, speed_mps=speed_mps)
+    assert math.dist(person(there_s), (8.0, 6.0)) < 0.02
+    record = one(open_space(), (2.0, 6.0), (8.0, 6.0), 9.0, {"p": person})
+    assert record.arrival_s("a") < straight_s((2.0, 6.0), (8.0, 6.0)) + 0.5
+    assert record.nearest_person("a") > CONTACT_M + 0.1
+
+
 def corridor(width):
     walls = [((0.0, 5.0), (16.0, 5.0)), ((0.0, 5.0 + width), (16.0, 5.0 + width))]
     return open_space(walls=walls), 5.0 + width / 2

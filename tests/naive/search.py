@@ -213,7 +213,8 @@ def _priced_step(
         return True, math.inf
     minded = sum(soft for _, soft in meetings)
     minded += ground.risk(k + 1, middle, (vx, vy)) + ground.risk(k + 2, end, (wx, wy))
-    priced = risk_price(task, node.step * ground.step_s) * half * minded
+    left_m = ground.metres_left(node.place)
+    priced = risk_price(task, node.step * ground.step_s, left_m) * half * minded
     if not accumulate:
         return False, priced
     room = min(ground.clearance(middle), ground.clearance(end))
@@ -258,7 +259,9 @@ def path_cost(ground: Ground, path: NDArray[np.float64]) -> tuple[float, float]:
     for k, (a, b) in enumerate(pairwise(path)):
         risks.append(ground.risk(k + 1, tuple(b), velocities[k + 1]))
         soft = ground.meeting(k, tuple(a), tuple(b))[1]
-        cost += risk_price(task, (k // 2) * ground.step_s) * ds * (risks[-1] + soft)
+        left_m = ground.metres_left(tuple(path[k - k % 2]))
+        price = risk_price(task, (k // 2) * ground.step_s, left_m)
+        cost += price * ds * (risks[-1] + soft)
         cost += task.turn_weight * math.dist(velocities[k], velocities[k + 1])
     for a, h, b in zip(path[::2], path[1::2], path[2::2], strict=False):
         room = min(ground.clearance(tuple(h)), ground.clearance(tuple(b)))

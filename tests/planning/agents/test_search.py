@@ -179,6 +179,30 @@ def test_and_for_who_stays_where_it_is(goal, crowd, away) -> None:
     same_as_twin(ground_of(question, 5, (), crowd), lopsided_moves(), SearchForm.ACCUMULATED)
 
 
+@given(goal=ends, crowd=people, away=points(-0.9, 0.9), v=speeds)
+@holds(15, 3)
+def test_and_for_who_arrives(goal, crowd, away, v) -> None:
+    goal = (goal[0] + 0.0137, goal[1] + 0.0071)
+    question = task((goal[0] + away[0], goal[1] + away[1]), goal, v, max_expansions=40)
+    ground = ground_of(question, 5, (), crowd)
+    result = same_as_twin(ground, lopsided_moves(), SearchForm.ACCUMULATED)
+    if result.status is SearchStatus.FOUND:
+        assert result.cost_s == pytest.approx(priced(ground, result.path).seconds, abs=1e-9)
+
+
+def test_whoever_comes_to_the_goal_after_the_arrival_costs_nothing() -> None:
+    """The trip has ended by then; one that stays at a place for good minds whoever comes there."""
+    comes = [((6.0, 0.6), (0.0, 1.2))]
+    path = np.column_stack([np.minimum(6.0, 5.0 + 0.26 * np.arange(19)), np.full(19, 4.0)])
+
+    def seconds(hold, crowd) -> float:
+        question = task((5.0, 4.0), (6.0, 4.0), (1.3, 0.0), hold=hold)
+        return priced(ground_of(question, 9, (), crowd), path).seconds
+
+    assert seconds(False, comes) == seconds(False, [])
+    assert seconds(True, comes) > seconds(True, []) + 0.5
+
+
 @given(goal=ends, crowd=people)
 @holds(5, 1)
 def test_and_for_who_minds_nobody(goal, crowd) -> None:
