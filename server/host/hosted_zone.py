@@ -40,6 +40,7 @@ from esplanade.server.link.subjects import Subjects
 from esplanade.server.link.zone_description import ZoneDescription, encode_description, rules_told
 from esplanade.server.live.bulletin import Bulletin
 from esplanade.server.metrics import Metrics
+from esplanade.server.net.actor_planning import ActorPlanning
 from esplanade.server.net.chat_gate import ChatGate
 from esplanade.server.net.ground_work import GroundWork
 from esplanade.server.net.pace_notices import PaceNotices
@@ -258,11 +259,11 @@ async def hosted_zone(
             schedule,
             renewal,
             metrics,
-            thread,
+            ActorPlanning(world, thread, metrics, settings.planning_interval),
             console,
             moderation,
             live.tap,
-        ).planning(settings.planning_interval)
+        )
         sender = FrameSender(broker, subjects, zone.name, ticker.whole)
         digest = digest_of(zone.loaded.scene)
         checkpoints = Checkpointing(world, parts, store, claim, digest, packing)

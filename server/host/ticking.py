@@ -2,7 +2,6 @@
 
 import asyncio
 from collections.abc import Sequence
-from concurrent.futures import Executor
 from dataclasses import replace
 from time import perf_counter
 from typing import Final
@@ -22,11 +21,11 @@ from esplanade.server.link.frames_over_nats import Body, FrameSender
 from esplanade.server.link.whole_state import WholeState
 from esplanade.server.live.tap import Tap
 from esplanade.server.metrics import Metrics
+from esplanade.server.net.actor_planning import ActorPlanning
 from esplanade.server.net.ground_work import GroundWork
-from esplanade.server.net.interval_choice import IntervalChoice
 from esplanade.server.net.schedule import Schedule, came_by
 from esplanade.server.world.frame import Frame
-from esplanade.server.world.inputs import Input, PlanEvery, Still
+from esplanade.server.world.inputs import Input, Still
 from esplanade.server.world.zone import Zone
 
 ALIVE_S: Final = 0.4
@@ -49,7 +48,7 @@ class HostTicker:
         schedule: Schedule,
         renewal: Renewal,
         metrics: Metrics,
-        thread: Executor,
+        planning: ActorPlanning,
         console: Console,
         moderation: HostModeration,
         tap: Tap,
@@ -63,11 +62,10 @@ class HostTicker:
         self._schedule = schedule
         self._renewal = renewal
         self._metrics = metrics
-        self._thread = thread
+        self._planning = planning
         self._console = console
         self._moderation = moderation
         self._tap = tap
-        self._interval = IntervalChoice(world.planning_interval)
         self._known = WholeState()
         self._known.begin_with_doors(world.doors.states())
         self._told = world.tick
@@ -75,11 +73,6 @@ class HostTicker:
         self._stopping = asyncio.Event()
         metrics.total("ticks", "Ticks of the world", lambda: world.tick)
         metrics.total("ticks_late", "Ticks that began late", lambda: schedule.late_ticks)
-
-    def planning(self, interval: int | None) -> "HostTicker":
-        """The same, planning each actor once in so many ticks; None: as often as there is time."""
-        self._interval = IntervalChoice(self._world.planning_interval, interval)
-        return self
 
     def whole(self) -> tuple[FrameKey, Body]:
         """The whole state of the zone after the newest frame."""
@@ -124,22 +117,18 @@ class HostTicker:
             self._tap.stand()
             await self._answering.send()
         if self._tap.traces.stood():
-            await loop.run_in_executor(self._thread, self._tap.traces.make_one)
+            await self._planning.run(self._tap.traces.make_one)
 
     async def _tick(self, sender: FrameSender) -> None:
         loop = asyncio.get_running_loop()
         self._schedule.begin(loop.time())
-        inputs = [*self._given(still=False), *self._ground_work.drain()]
-        if self._interval.ticks != self._world.planning_interval:
-            inputs = [PlanEvery(self._interval.ticks), *inputs]
-        await self._run(sender, inputs)
+        given = [*self._planning.inputs(), *self._given(still=False)]
+        await self._run(sender, [*given, *self._ground_work.drain()])
         self._schedule.pace.ticked(loop.time(), self._world.tick, self._world.tick_s)
-        room_s = self._schedule.next_deadline - loop.time()
-        planning_s = self._world.times.seconds.get("actors", 0.0)
-        self._interval.ticked(room_s, planning_s, self._schedule.period_s)
+        room_s = self._planning.ticked(self._schedule, loop.time())
         if self._tap.traces.ticked(room_s):
             # No tick begins meanwhile.
-            await loop.run_in_executor(self._thread, self._tap.traces.make_one)
+            await self._planning.run(self._tap.traces.make_one)
 
     def _given(self, *, still: bool) -> list[Input]:
         """Inputs of people and operators for the tick that is about to begin."""
@@ -151,7 +140,7 @@ class HostTicker:
     async def _run(self, sender: FrameSender, inputs: Sequence[Input]) -> None:
         loop, start = asyncio.get_running_loop(), perf_counter()
         self._world.begin(inputs)
-        moved = await loop.run_in_executor(self._thread, self._think)
+        moved = await self._planning.think()
         frame = self._moderation.numbered(self._world.finish(moved))
         self._console.take(frame)
         told = replace(frame, outcomes=[], rate=self._rate())
@@ -177,12 +166,3 @@ class HostTicker:
         state = self._schedule.pace.state
         usual = state.factor == 1.0 and not state.paused
         return 1.0 if usual else state.rate
-
-    def _think(self) -> bool:
-        try:
-            return self._world.think()
-        except Exception:
-            # The people's world goes on; the actors stand until planning works again.
-            log.exception("planning failed", tick=self._world.tick)
-            self._metrics.planning_failures.inc()
-            return False
