@@ -122,8 +122,8 @@ class HostTicker:
     async def _tick(self, sender: FrameSender) -> None:
         loop = asyncio.get_running_loop()
         self._schedule.begin(loop.time())
-        given, derived = self._given(still=False), self._ground_work.drain()
-        await self._run(sender, [*self._planning.inputs(), *given, *derived])
+        given = [*self._planning.inputs(), *self._given(still=False)]
+        await self._run(sender, [*given, *self._ground_work.drain()])
         self._schedule.pace.ticked(loop.time(), self._world.tick, self._world.tick_s)
         room_s = self._planning.ticked(self._schedule, loop.time())
         if self._tap.traces.ticked(room_s):
@@ -140,7 +140,8 @@ class HostTicker:
     async def _run(self, sender: FrameSender, inputs: Sequence[Input]) -> None:
         loop, start = asyncio.get_running_loop(), perf_counter()
         self._world.begin(inputs)
-        frame = self._moderation.numbered(self._world.finish(await self._planning.think()))
+        moved = await self._planning.think()
+        frame = self._moderation.numbered(self._world.finish(moved))
         self._console.take(frame)
         told = replace(frame, outcomes=[], rate=self._rate())
         self._known.take(told)
