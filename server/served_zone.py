@@ -18,6 +18,7 @@ from esplanade.server.link.local import LocalLink
 from esplanade.server.live.bulletin import Bulletin
 from esplanade.server.live.live import Live
 from esplanade.server.metrics import Metrics
+from esplanade.server.net.actor_planning import ActorPlanning
 from esplanade.server.net.delivery import Delivery
 from esplanade.server.net.entrance import Entrance
 from esplanade.server.net.ground_work import GroundWork
@@ -223,11 +224,10 @@ async def served_zone(
                 delivery,
                 schedule,
                 metrics,
-                thread,
                 console,
+                ActorPlanning(world, thread, metrics, settings.planning_interval),
             )
             .keeping(persistence)
-            .planning(settings.planning_interval)
             .sparing(process.long_lived)
         )
         if travel is not None:

@@ -33,6 +33,7 @@ from esplanade.server.link.frames_over_nats import FrameSender
 from esplanade.server.link.subjects import Subjects
 from esplanade.server.link.zone_description import ZoneDescription, encode_description, rules_told
 from esplanade.server.metrics import Metrics
+from esplanade.server.net.actor_planning import ActorPlanning
 from esplanade.server.net.ground_work import GroundWork
 from esplanade.server.net.pending_inputs import PendingInputs
 from esplanade.server.net.route_requests import RouteRequests
@@ -190,8 +191,8 @@ async def hosted_zone(
             Schedule(world.tick_s, loop.time()),
             renewal,
             metrics,
-            thread,
-        ).planning(settings.planning_interval)
+            ActorPlanning(world, thread, metrics, settings.planning_interval),
+        )
         sender = FrameSender(broker, subjects, zone.name, ticker.whole)
         digest = digest_of(zone.loaded.scene)
         checkpoints = Checkpointing(world, store, claim, digest, packing)

@@ -1,7 +1,6 @@
 """The ticks of a hosted zone at their times: inputs of gateways in, frames out."""
 
 import asyncio
-from concurrent.futures import Executor
 from time import perf_counter
 
 import structlog
@@ -16,10 +15,9 @@ from esplanade.server.link.frame_parts import FrameError, FrameKey
 from esplanade.server.link.frames_over_nats import Body, FrameSender
 from esplanade.server.link.whole_state import WholeState
 from esplanade.server.metrics import Metrics
+from esplanade.server.net.actor_planning import ActorPlanning
 from esplanade.server.net.ground_work import GroundWork
-from esplanade.server.net.interval_choice import IntervalChoice
 from esplanade.server.net.schedule import Schedule
-from esplanade.server.world.inputs import Input, PlanEvery
 from esplanade.server.world.zone import Zone
 
 log = structlog.get_logger(__name__)
@@ -39,7 +37,7 @@ class HostTicker:
         schedule: Schedule,
         renewal: Renewal,
         metrics: Metrics,
-        thread: Executor,
+        planning: ActorPlanning,
     ) -> None:
         self._world = world
         self._ground_work = ground_work
@@ -50,19 +48,13 @@ class HostTicker:
         self._schedule = schedule
         self._renewal = renewal
         self._metrics = metrics
-        self._thread = thread
-        self._interval = IntervalChoice(world.planning_interval)
+        self._planning = planning
         self._known = WholeState()
         self._known.begin_with_doors(world.doors.states())
         self._told = world.tick
         self._stopping = asyncio.Event()
         metrics.total("ticks", "Ticks of the world", lambda: world.tick)
         metrics.total("ticks_late", "Ticks that began late", lambda: schedule.late_ticks)
-
-    def planning(self, interval: int | None) -> "HostTicker":
-        """The same, planning each actor once in so many ticks; None: as often as there is time."""
-        self._interval = IntervalChoice(self._world.planning_interval, interval)
-        return self
 
     def whole(self) -> tuple[FrameKey, Body]:
         """The whole state of the zone after the newest frame."""
@@ -96,12 +88,8 @@ class HostTicker:
         self._schedule.begin(loop.time())
         self._portals.check(loop.time())
         wanted = self._people.drain(self._batches.lines(), loop.time())
-        inputs: list[Input] = [*wanted, *self._ground_work.drain()]
-        if self._interval.ticks != self._world.planning_interval:
-            inputs = [PlanEvery(self._interval.ticks), *inputs]
-        self._world.begin(inputs)
-        moved = await loop.run_in_executor(self._thread, self._think)
-        frame = self._world.finish(moved)
+        self._world.begin([*self._planning.inputs(), *wanted, *self._ground_work.drain()])
+        frame = self._world.finish(await self._planning.think())
         self._known.take(frame)
         self._told = frame.tick
         self._people.told(frame)
@@ -112,15 +100,4 @@ class HostTicker:
             log.exception("a frame cannot be sent", tick=frame.tick)
         await self._answering.send()
         self._metrics.tick_took(perf_counter() - start, self._world.times.seconds)
-        room_s = self._schedule.next_deadline - loop.time()
-        planning_s = self._world.times.seconds.get("actors", 0.0)
-        self._interval.ticked(room_s, planning_s, self._schedule.period_s)
-
-    def _think(self) -> bool:
-        try:
-            return self._world.think()
-        except Exception:
-            # The people's world goes on; the actors stand until planning works again.
-            log.exception("planning failed", tick=self._world.tick)
-            self._metrics.planning_failures.inc()
-            return False
+        self._planning.ticked(self._schedule, loop.time())

@@ -2,7 +2,6 @@
 
 import asyncio
 from collections.abc import Sequence
-from concurrent.futures import Executor
 from time import perf_counter
 from typing import Self
 
@@ -12,17 +11,17 @@ from esplanade.server.console.console import Console
 from esplanade.server.link.local import LocalLink
 from esplanade.server.live.tap import Tap
 from esplanade.server.metrics import Metrics
+from esplanade.server.net.actor_planning import ActorPlanning
 from esplanade.server.net.delivery import Delivery
 from esplanade.server.net.ground_work import GroundWork
 from esplanade.server.net.hub import Hub
-from esplanade.server.net.interval_choice import IntervalChoice
 from esplanade.server.net.long_lived import LongLived
 from esplanade.server.net.persistence import Persistence
 from esplanade.server.net.schedule import Schedule
 from esplanade.server.trajectories.keeping import WorldTrajectories
 from esplanade.server.world.actor_travel import ActorTravel
 from esplanade.server.world.audience import Audience
-from esplanade.server.world.inputs import Input, PlanEvery, Still
+from esplanade.server.world.inputs import Input, Still
 from esplanade.server.world.zone import Zone
 
 log = structlog.get_logger(__name__)
@@ -41,8 +40,8 @@ class Ticker:
         delivery: Delivery,
         schedule: Schedule,
         metrics: Metrics,
-        thread: Executor,
         console: Console,
+        planning: ActorPlanning,
     ) -> None:
         self._world = world
         self._ground_work = ground_work
@@ -52,9 +51,8 @@ class Ticker:
         self._delivery = delivery
         self._schedule = schedule
         self._metrics = metrics
-        self._thread = thread
         self._console = console
-        self.planning(None)
+        self._planning = planning
         self.tap: Tap | None = None
         """Where the ticks go that operators see."""
         self.trajectories: WorldTrajectories | None = None
@@ -69,11 +67,6 @@ class Ticker:
             lambda: audience.walkers_shown,
         )
         metrics.total("ticks", "Ticks of the world", lambda: world.tick)
-        metrics.gauge(
-            "planning_interval_ticks",
-            "Ticks from one planning of an actor to its next",
-            lambda: world.planning_interval,
-        )
         pace = schedule.pace
         metrics.gauge("pace_factor", "Pace that is wanted, 1 as usual", lambda: pace.state.factor)
         metrics.gauge(
@@ -98,14 +91,6 @@ class Ticker:
     def with_travel(self, travel: ActorTravel) -> Self:
         """The same, letting actors go to other zones and come from there."""
         self._travel = travel
-        return self
-
-    def planning(self, interval: int | None) -> Self:
-        """The same, planning each actor once in so many ticks; None: as often as there is time."""
-        zone = self._world
-        self._interval = IntervalChoice(
-            zone.planning_interval, interval, zone.usual_planning_interval
-        )
         return self
 
     def stop(self) -> None:
@@ -156,32 +141,32 @@ class Ticker:
             if self.tap is not None:
                 self.tap.stand()
         if self.tap is not None and self.tap.traces.stood():
-            loop = asyncio.get_running_loop()
-            await loop.run_in_executor(self._thread, self.tap.traces.make_one)
+            await self._planning.run(self.tap.traces.make_one)
 
     async def _tick(self) -> None:
         loop = asyncio.get_running_loop()
         self._schedule.begin(loop.time())
         kept: list[Input] = [] if self._persistence is None else self._persistence.drain()
-        if self._interval.ticks != self._world.planning_interval:
-            kept = [*kept, PlanEvery(self._interval.ticks)]
-        given = [*kept, *self._hub.drain(loop.time()), *self._console.drain()]
+        given = [
+            *kept,
+            *self._planning.inputs(),
+            *self._hub.drain(loop.time()),
+            *self._console.drain(),
+        ]
         given += self._travellers()
         await self._run(given, self._ground_work.drain())
         self._schedule.pace.ticked(loop.time(), self._world.tick, self._world.tick_s)
-        room_s = self._schedule.next_deadline - loop.time()
-        planning_s = self._world.times.seconds.get("actors", 0.0)
-        self._interval.ticked(room_s, planning_s, self._schedule.period_s)
+        room_s = self._planning.ticked(self._schedule, loop.time())
         if self.tap is not None and self.tap.traces.ticked(room_s):
             # No tick begins meanwhile.
-            await loop.run_in_executor(self._thread, self.tap.traces.make_one)
+            await self._planning.run(self.tap.traces.make_one)
 
     async def _run(self, given: Sequence[Input], derived: Sequence[Input]) -> None:
         loop, start = asyncio.get_running_loop(), perf_counter()
         self._link.send(list(given))
         inputs = [*self._link.inputs(), *derived]
         self._world.begin(inputs)
-        actors_moved = await loop.run_in_executor(self._thread, self._think)
+        actors_moved = await self._planning.think()
         self._link.publish(self._world.finish(actors_moved))
         frames = self._link.frames()
         for frame in frames:
@@ -210,12 +195,3 @@ class Ticker:
     def _travellers(self) -> Sequence[Input]:
         """Inputs by which actors go to other zones, or come from there."""
         return () if self._travel is None else self._travel.drain()
-
-    def _think(self) -> bool:
-        try:
-            return self._world.think()
-        except Exception:
-            # The people's world goes on; the actors stand until planning works again.
-            log.exception("planning failed", tick=self._world.tick)
-            self._metrics.planning_failures.inc()
-            return False

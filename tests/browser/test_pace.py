@@ -24,6 +24,15 @@ BACK_M: Final = 0.02
 MOST_STILL: Final = 5
 """A page sends no more than this to a world that stands while nobody touches it."""
 
+LAST_FRAMES: Final = 5
+"""While nobody is drawn elsewhere in so many frames, everybody stands."""
+
+MOST_LOOKS: Final = 120
+"""A busy machine draws the ticks that it was told of within so many looks of half a second."""
+
+TEN_TICKS_M: Final = 0.4
+"""Ten ticks of walking bring an avatar further than this."""
+
 # Where the own avatar and others are drawn in every frame, and when.
 _RECORD: Final = """(seconds) => new Promise((resolve) => {
   const frames = [];
@@ -69,10 +78,14 @@ async def test_the_picture_goes_at_the_pace_of_the_world(
     assert _most_moved_m(stood) == 0.0
     tick = promenade.world.tick
     stepped = await _changed(ann, olga, 1.5, step=10)
+    for _ in range(MOST_LOOKS):
+        if _walked_m(stood, stepped) > TEN_TICKS_M and _most_moved_m(stepped[-LAST_FRAMES:]) == 0.0:
+            break
+        stepped += await _frames(ann, 0.5)
     # Ticks in which nobody moves take in messages that Ann's page sends to a world that stands.
     assert tick + 10 <= promenade.world.tick <= tick + 10 + MOST_STILL
     assert _back_m(stepped) < BACK_M
-    assert 0.4 < math.dist(_own(stood[-1]), _own(stepped[-1])) < 1.1
+    assert TEN_TICKS_M < _walked_m(stood, stepped) < 1.1
     assert _most_moved_m(await _frames(ann, 0.5)) == 0.0
 
     await olga.send({"op": "pace", "factor": 0.25})
@@ -106,6 +119,11 @@ async def _frames(ann: Visitor, seconds: float) -> list[dict[str, Any]]:
 
 def _own(frame: dict[str, Any]) -> tuple[float, float]:
     return next((x, y) for _, own, x, y in frame["places"] if own)
+
+
+def _walked_m(before: list[dict[str, Any]], after: list[dict[str, Any]]) -> float:
+    """The distance from where the own avatar was last drawn to where it is last drawn now."""
+    return math.dist(_own(before[-1]), _own(after[-1]))
 
 
 def _own_mps(frames: list[dict[str, Any]]) -> float:
