@@ -25,6 +25,10 @@ class Constants:
     """Bytes of a frame that tells nothing, with subject and head."""
     frame_avatar_bytes: float = 24.5
     """Bytes of a frame for each avatar (`benchmarks.frames`)."""
+    gateway_tick_us: float = 450.0
+    """Of a gateway with nobody at it, in the time of a tick (`benchmarks.cluster crowd`)."""
+    broker_message_us: float = 67.0
+    """Of the broker for each message that it takes or passes on (`benchmarks.cluster check`)."""
     message_us: float = 60.0
     """To send or take in one message of the broker, on either side (`benchmarks.frames`)."""
     viewer_us: float = 13.5

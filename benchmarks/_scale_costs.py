@@ -12,6 +12,8 @@ class Costs(NamedTuple):
 
     zone_cores: float
     gateway_cores: float
+    broker_cores: float
+    """Of all brokers together."""
     inside_bytes: float
     """Between hosts and gateways, through the broker once."""
     out_bytes: float
@@ -26,9 +28,13 @@ def costs_of(second: Second, constants: Constants) -> Costs:
     zones, used = len(second.in_zone), float((second.in_zone > 0).sum())
     ticks = one.tick_hz
     frames = second.frames
+    gateways = len(second.at_gateway)
     made = one.frame_make_us * people + one.message_us * used
     tick = one.zone_tick_us * zones + one.zone_person_us * people
     read = one.frame_read_us * second.frame_people + one.message_us * frames
+    # A batch of inputs goes up wherever a frame comes down.
+    batches = one.message_us * frames
+    carried = used + 2.0 * frames
     seen = np.minimum(second.in_zone - 1, one.most_seen).clip(min=0)
     viewer_bytes = np.minimum(
         one.lone_viewer_bytes_s + one.seen_avatar_bytes_s * seen, one.viewer_bytes_s
@@ -36,8 +42,11 @@ def costs_of(second: Second, constants: Constants) -> Costs:
     frame_bytes = one.frame_head_bytes * frames + one.frame_avatar_bytes * second.frame_people
     upward = one.inputs_s * one.input_bytes * people
     return Costs(
-        zone_cores=1e-6 * ticks * (tick + made),
-        gateway_cores=1e-6 * ticks * (read + one.viewer_us * people),
+        zone_cores=1e-6 * ticks * (tick + made + batches),
+        gateway_cores=1e-6
+        * ticks
+        * (one.gateway_tick_us * gateways + read + batches + one.viewer_us * people),
+        broker_cores=1e-6 * ticks * one.broker_message_us * carried,
         inside_bytes=ticks * frame_bytes + upward,
         out_bytes=float((viewer_bytes * second.in_zone).sum()),
         commits=2.0 * used / one.renew_s + one.hop_commits * second.hops + second.moves,

@@ -111,6 +111,7 @@ def figures_of(run: Run, constants: Constants) -> dict[str, str]:
         "hops a second": f"{np.mean([each.hops for each in run.seconds]):.0f}",
         "cores of hosts": f"{costs.zone_cores:.1f}",
         "cores of gateways": f"{costs.gateway_cores:.1f}",
+        "cores of brokers": f"{costs.broker_cores:.1f}",
         "inside, MB/s": f"{1e-6 * costs.inside_bytes:.2f}",
         "out to people, MB/s": f"{1e-6 * costs.out_bytes:.2f}",
         "transactions a second": f"{costs.commits:.0f}",

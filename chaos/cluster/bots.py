@@ -153,3 +153,19 @@ class Bot:
                 case _:
                     direction = self._chance.uniform(-math.pi, math.pi)
                     await client.move(direction, self._chance.uniform(0.0, FASTEST_MPS))
+
+
+async def end(tasks: Sequence["asyncio.Task[None]"]) -> None:
+    """End the lives of bots.
+
+    Raises
+    ------
+    Exception
+        One has ended by itself, which only a fault of ours makes it do.
+    """
+    ended = [task for task in tasks if task.done()]
+    for task in tasks:
+        task.cancel()
+    await asyncio.gather(*tasks, return_exceptions=True)
+    for task in ended:
+        task.result()

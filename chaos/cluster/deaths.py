@@ -12,6 +12,7 @@ from tests.patience import PATIENCE_S
 from tests.server.clustering.clusters import Cluster, Process
 from tests.server.zones import BEFORE_GATE, until
 
+from chaos.cluster.bots import end
 from chaos.cluster.held_hops import MOVED, Step, Way, held
 from chaos.cluster.ledger import Ledger
 from chaos.cluster.travellers import Traveller
@@ -111,12 +112,7 @@ async def die(cluster: Cluster, step: Step, victim: Victim) -> Death:
         faults = [*ledger.faults, *_misplaced(cluster, person, zone, step)]
         return Death(step, victim, zone, walks_s, faults)
     finally:
-        ended = [task for task in tasks if task.done()]
-        for task in tasks:
-            task.cancel()
-        await asyncio.gather(*tasks, return_exceptions=True)
-        for task in ended:
-            task.result()  # a bot ends by a fault only
+        await end(tasks)
 
 
 def _process(way: Way, victim: Victim) -> Process:

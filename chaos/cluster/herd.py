@@ -8,7 +8,6 @@ from collections import Counter
 from collections.abc import Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass
-from functools import partial
 from typing import Final, cast
 
 from tests.server.clustering.clusters import Cluster
@@ -151,9 +150,12 @@ class Herd:
     async def all_in(self) -> None:
         """Wait until everybody is in, and is shown something from then on."""
         await until(lambda: self.inside == len(self.people))
-        for each in self.people:
-            before = _snapshots(each)
-            await until(partial(_has_changed, each, before))
+        before = [_snapshots(each) for each in self.people]
+        await until(
+            lambda: all(
+                _snapshots(each) != had for each, had in zip(self.people, before, strict=True)
+            )
+        )
 
     async def live(self) -> None:
         """Let everybody live, until cancelled."""
@@ -239,11 +241,6 @@ async def restart_gateways(cluster: Cluster, people: int, *words: str) -> Return
     finally:
         living.cancel()
         await asyncio.gather(living, return_exceptions=True)
-
-
-def _has_changed(person: Person, snapshots: int) -> bool:
-    """Whether somebody is on another connection, or was sent more than so many snapshots."""
-    return _snapshots(person) != snapshots
 
 
 def _snapshots(person: Person) -> int:

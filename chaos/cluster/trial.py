@@ -11,7 +11,7 @@ from tests.server.brokers import Brokers
 from tests.server.clustering.clusters import Cluster
 from tests.server.databases import PostgresqlServer
 
-from chaos.cluster.bots import Bot
+from chaos.cluster.bots import Bot, end
 from chaos.cluster.faults import Faults
 from chaos.cluster.ledger import Ledger
 
@@ -66,12 +66,7 @@ async def run_trial(
         await _all_in(ledger, bots)
         ledger.check_rest(await asyncio.to_thread(lambda: cluster.seats))
     finally:
-        ended = [task for task in tasks if task.done()]
-        for task in tasks:
-            task.cancel()
-        await asyncio.gather(*tasks, return_exceptions=True)
-    for task in ended:
-        task.result()  # a bot ends by a fault only
+        await end(tasks)
     outcome.faults, outcome.counts = ledger.faults, dict(ledger.counts)
     return outcome
 

@@ -62,7 +62,15 @@ def test_costs_are_sums_of_the_constants() -> None:
     ticks = constants.tick_hz
     tick_us = constants.zone_tick_us + 100 * constants.zone_person_us
     made_us = constants.message_us + 100 * constants.frame_make_us
-    assert costs.zone_cores == pytest.approx(1e-6 * ticks * (tick_us + made_us))
+    pairs = second.frames
+    batches_us = pairs * constants.message_us
+    assert costs.zone_cores == pytest.approx(1e-6 * ticks * (tick_us + made_us + batches_us))
+    gateways_us = len(second.at_gateway) * constants.gateway_tick_us
+    read_us = pairs * (constants.message_us + 100 * constants.frame_read_us)
+    edge_us = gateways_us + read_us + batches_us + 100 * constants.viewer_us
+    assert costs.gateway_cores == pytest.approx(1e-6 * ticks * edge_us)
+    carried = 1 + 2 * pairs
+    assert costs.broker_cores == pytest.approx(1e-6 * ticks * carried * constants.broker_message_us)
     frame = constants.frame_head_bytes + 100 * constants.frame_avatar_bytes
     upward = 100 * constants.inputs_s * constants.input_bytes
     assert costs.inside_bytes == pytest.approx(ticks * frame + upward)
