@@ -41,7 +41,7 @@ cluster: $(VENV)/.test $(CLIENT)  ## run a world on several processes of this ma
 	@exec $(RUN) -m tools.local_cluster $(ARGS)
 
 test: $(VENV)/.test $(CLIENT)  ## run all tests, in a real browser too
-	@ESPLANADE_CHROMIUM="$$($(RUN) tools/ensure_browser.py)" $(PYTEST) --numprocesses 3 --dist loadgroup $(ARGS)
+	@ESPLANADE_CHROMIUM="$$($(RUN) tools/ensure_browser.py)" $(PYTEST) --numprocesses 3 --dist loadscope $(ARGS)
 
 test-boundscheck: $(VENV)/.test  ## run tests of kernels with every array access checked
 	NUMBA_BOUNDSCHECK=1 $(PYTEST) tests/planning tests/pedestrians $(ARGS)

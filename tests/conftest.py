@@ -2,6 +2,7 @@
 
 import os
 from collections.abc import Generator
+from typing import Any
 
 import pytest
 from _pytest.terminal import TerminalReporter
@@ -26,6 +27,14 @@ def pytest_runtest_makereport(
         report.outcome = "failed"
         report.longrepr = f"{item.nodeid} skipped, but {REQUIRE_VARIABLE}=1: {report.longrepr}"
     return report
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> object:
+    """Have some tests run in one process of several (`tests/distribution.py`)."""
+    from tests.distribution import Together
+
+    return Together(config, log)
 
 
 def pytest_terminal_summary(terminalreporter: TerminalReporter) -> None:

@@ -43,7 +43,6 @@ def test_a_model_that_is_off_is_told(capsys: pytest.CaptureFixture[str]) -> None
     assert "off by more than 20%: cores" in capsys.readouterr().out
 
 
-@pytest.mark.xdist_group("cluster")
 def test_a_small_crowd_is_measured_in_real_processes() -> None:
     found = crowd(people=30, gateways=1, each=10, seconds=1.0)
     assert (found.people, found.viewers, found.gateways) == (30, 10, 1)

@@ -1,7 +1,6 @@
 """A real server and a real chromium for the tests of the web client."""
 
 from collections.abc import AsyncIterator
-from pathlib import Path
 from typing import Final
 
 import pytest
@@ -14,13 +13,6 @@ from tests.browser.chromium import WEBGL, browser_fixture, chromium_fixture
 from tests.browser.worlds import FORECOURT, built, entered_at, world
 
 ACTORS: Final = 6
-
-
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Have one browser at a time: each of several would draw on all cores, and slow the others."""
-    for item in items:
-        if Path(__file__).parent in item.path.parents:
-            item.add_marker(pytest.mark.xdist_group("browser"))
 
 
 chromium = chromium_fixture("module", *WEBGL)

@@ -11,13 +11,6 @@ from tests.server.databases import PostgresqlServer, postgresql_server
 from tests.server.zones import write_town
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Have all tests here run in one process of several, so that they share the cluster."""
-    for item in items:
-        if Path(__file__).parent in item.path.parents:
-            item.add_marker(pytest.mark.xdist_group("cluster"))
-
-
 @pytest.fixture(scope="package")
 def broker() -> Iterator[NatsServer]:
     with nats_server() as server:
