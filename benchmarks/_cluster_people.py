@@ -33,7 +33,7 @@ class Wishes:
         self._random = np.random.default_rng(seed)
 
     def of(self, number: int, chance: float) -> list[tuple[int, float, float]]:
-        """Who of so many changes their mind now, and the new direction in radians and m/s."""
+        """Those who change their mind now: index, new direction in radians and speed, m/s."""
         turning = np.flatnonzero(self._random.random(number) < chance)
         angles = self._random.uniform(-math.pi, math.pi, len(turning))
         speeds = SPEED_MPS * (self._random.random(len(turning)) < WALKING)

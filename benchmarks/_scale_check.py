@@ -25,7 +25,7 @@ TICK_HZ: Final = 20.0
 SETTLE_S: Final = 15.0
 CLEAR_S: Final = 3.0
 SHOWN: Final = 5
-"""So many snapshots after a pause tell that it is over."""
+"""A pause is over once this many snapshots have come after it."""
 PAUSE_S: Final = 1.0
 """A longer time without a snapshot is a pause."""
 WITHIN: Final = 0.2

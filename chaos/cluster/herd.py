@@ -18,7 +18,7 @@ from esplanade.protocol import VERSION, CloseCode, ServerCode, decode_server, en
 from esplanade.protocol.messages import Error, Hello, Welcome
 
 TOGETHER: Final = 40
-"""So many come in at once in the beginning."""
+"""In the beginning this many people come in at once."""
 FIRST_S: Final = 0.4
 LONGEST_S: Final = 8.0
 """Waiting times before one tries again, as in the web client (`client_web/src/net/backoff.ts`)."""

@@ -100,61 +100,34 @@ def _sample_route(
     return count
 
 
-@inlined
-def _take_anew(
-    grid: GridArrays,
-    count: int,
-    bodies: NDArray[np.float64],
-    room_m: float,
-    space: LookingSpace,
-) -> None:
-    """Tell which samples of the route are taken, once bodies are others than before."""
-    for k in range(count):
-        x, y = space.samples[k]
-        space.taken[k] = _taken_by(bodies, room_m, x, y, floor_of(grid, space.cells[k])) >= 0
-
-
 @kernel
-def _without_takers(
+def _leaving_free(
     grid: GridArrays,
+    sample: int,
+    removes: bool,
     count: int,
     bodies: NDArray[np.float64],
     room_m: float,
     space: LookingSpace,
 ) -> NDArray[np.float64]:
-    """The bodies, those who take the end of the route with no room, by which it is taken anew."""
-    others = bodies.copy()
-    x, y = space.samples[count - 1]
-    floor_m = floor_of(grid, space.cells[count - 1])
-    taker = _taken_by(others, room_m, x, y, floor_m)
-    while taker >= 0:
-        others[taker, 3] = -room_m
-        taker = _taken_by(others, room_m, x, y, floor_m)
-    _take_anew(grid, count, others, room_m, space)
-    return others
+    """The bodies, changed so that none takes a sample of the route; all samples are told anew.
 
-
-@kernel
-def _touching_none(
-    grid: GridArrays,
-    count: int,
-    bodies: NDArray[np.float64],
-    room_m: float,
-    space: LookingSpace,
-) -> NDArray[np.float64]:
-    """The bodies, those that touch the begin of the route just so small that they do not.
-
-    Whoever stands so near to somebody can still leave them, and go around them.
+    Those that take it have no room if this `removes` them: somebody at the goal shuts no way.
+    Otherwise they are just so small that they do not take it: who touches them can still leave.
     """
     others = bodies.copy()
-    x, y = space.samples[0]
-    floor_m = floor_of(grid, space.cells[0])
+    x, y = space.samples[sample]
+    floor_m = floor_of(grid, space.cells[sample])
     taker = _taken_by(others, room_m, x, y, floor_m)
     while taker >= 0:
         away_m = length(others[taker, 0] - x, others[taker, 1] - y)
-        others[taker, 3] = max(away_m - TOUCH_M, 0.0) - room_m
+        left_m = 0.0 if removes else max(away_m - TOUCH_M, 0.0)
+        others[taker, 3] = left_m - room_m
         taker = _taken_by(others, room_m, x, y, floor_m)
-    _take_anew(grid, count, others, room_m, space)
+    for k in range(count):
+        x, y = space.samples[k]
+        floor_m = floor_of(grid, space.cells[k])
+        space.taken[k] = _taken_by(others, room_m, x, y, floor_m) >= 0
     return others
 
 
@@ -243,9 +216,9 @@ def look_along(
         return
     count = _sample_route(grid, potential, cell, x, y, bodies, room_m, space)
     if space.taken[0]:
-        bodies = _touching_none(grid, count, bodies, room_m, space)
+        bodies = _leaving_free(grid, 0, False, count, bodies, room_m, space)
     if count < len(space.samples) and space.taken[count - 1]:
-        bodies = _without_takers(grid, count, bodies, room_m, space)
+        bodies = _leaving_free(grid, count - 1, True, count, bodies, room_m, space)
     beside = int(BESIDE_M / SAMPLE_M)
     bumped = np.zeros(len(bodies), dtype=np.bool_)
     k = 0

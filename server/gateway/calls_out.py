@@ -13,6 +13,7 @@ from nats.errors import Error as NatsError
 
 from esplanade.server.link.calls import (
     ALIVE_S,
+    PARTS_UNDER_WAY,
     SILENT_S,
     Added,
     Alive,
@@ -29,6 +30,8 @@ from esplanade.server.link.calls import (
 )
 from esplanade.server.link.subjects import Subjects
 
+MOST_PARTS: Final = PARTS_UNDER_WAY + 2
+"""Parts of an answer that wait to be written; no host that keeps to the rules sends more."""
 NOBODY: Final = "503"
 """The status that a broker answers with where nobody takes a message."""
 
@@ -135,7 +138,7 @@ class OpenCall:
     def __init__(self, broker: Client, subject: str) -> None:
         self._broker = broker
         self._subject = subject
-        self._parts: asyncio.Queue[tuple[int, Answered] | Exception] = asyncio.Queue()
+        self._parts: asyncio.Queue[tuple[int, Answered] | Exception] = asyncio.Queue(MOST_PARTS)
         self._first: asyncio.Future[None] = asyncio.get_running_loop().create_future()
         self._number = 0
         self._over = False
@@ -152,7 +155,8 @@ class OpenCall:
                 log.warning("bad answer to a request of an operator", error=str(error))
                 said = CallLostError(str(error))
         is_alive = not isinstance(said, Exception) and isinstance(said[1], Alive)
-        if not is_alive or self._parts.empty():
+        # A part for which there is no room is missed by its number, as one that was lost.
+        if self._parts.empty() or not (is_alive or self._parts.full()):
             self._parts.put_nowait(said)
         if not self._first.done():
             if isinstance(said, Exception):

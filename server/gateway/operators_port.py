@@ -144,7 +144,7 @@ class ClusterZones:
         )
 
     async def _facts(self, identity: Identity, zone: str, seats: int) -> ZoneFacts:
-        """What a host tells of its zone; of one without a host only the seats are known."""
+        """The facts of a zone, as its host tells them; without a host only the seats are known."""
         call = Call(
             name=self._calls.new_name(),
             gateway=self._calls.gateway,

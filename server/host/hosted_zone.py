@@ -268,7 +268,7 @@ async def hosted_zone(
         digest = digest_of(zone.loaded.scene)
         checkpoints = Checkpointing(world, parts, store, claim, digest, packing)
         if CONSOLE not in found.parts:
-            # What is commanded afterwards is found from there.
+            # Recovery finds the commands after a checkpoint by the place that it has in the audit.
             await checkpoints.write()
         _watch(metrics, batches=batches, sender=sender, desk=desk, checkpoints=checkpoints)
         metrics.total("renewals_failed", "Renewals without an answer", lambda: renewal.failures)

@@ -1,4 +1,4 @@
-"""What a person does in the first minutes: come in, talk, look for somebody, read the help."""
+"""The first minutes of a person: they come in, talk, look for somebody, read the help."""
 
 import math
 from typing import Any, Final

@@ -36,7 +36,7 @@ _BOXES = """(selector) => [...document.querySelectorAll(selector)]
   .map((e) => ({ name: e.id || e.textContent, box: e.getBoundingClientRect().toJSON() }))
   .filter(({ box }) => box.width > 0)"""
 
-# What a person may have opened; the list of people has its first row only while they are in view.
+# Scripts that open what a person may have open.
 OPENINGS: Final = {
     "people": "() => document.querySelector('#people-open').click()",
     "plan": "() => document.querySelector('#plan-open').click()",

@@ -1,4 +1,4 @@
-/** What a session asks of the picture, drawn in three dimensions or as a map. */
+/** The picture as a session uses it, drawn in three dimensions or as a map. */
 
 import type { Place, ScreenPoint } from "../render/picking";
 import type { Choice } from "../render/quality";

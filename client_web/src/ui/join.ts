@@ -77,7 +77,7 @@ export class JoinDialog {
     this.button.textContent = busy ? "Coming in…" : "Come in";
   }
 
-  /** What is wrong with a name or a missing password; nothing if all is well. */
+  /** The fault of a name, or that the password is missing; an empty text if all is well. */
   private faultOf(name: string): string {
     if (name === "") return "Please give a name that one can see.";
     if (this.password.required && this.password.value === "") return "Please give the password.";

@@ -1,4 +1,4 @@
-/** What moves on a map: doors, people, actors, the path of a plan, and where the own camera looks. */
+/** The moving things on a map: doors, people, actors, the path of a plan, and where the own camera looks. */
 
 import type { Doors, Plan, SceneData } from "../net/messages";
 import type { Avatar } from "../world/world";

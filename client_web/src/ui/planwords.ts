@@ -18,7 +18,7 @@ const BEHAVIOURS: Record<string, string> = {
   idle: "has nothing to do",
 };
 
-/** What an actor does, and the place that it goes to. */
+/** The behaviour of an actor, and the place that it goes to. */
 export function behaviourOf(plan: Plan, places: readonly ScenePlace[]): string {
   const behaviour = BEHAVIOURS[plan.behaviour] ?? plan.behaviour;
   const place = plan.goal && plan.outcome === null ? placeAt(plan.goal, places) : null;
