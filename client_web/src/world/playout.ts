@@ -22,6 +22,8 @@ export class Playout {
   /** Seconds of the world in a second, of the frame before; not 0. */
   private rate = 1;
   private stands = false;
+  /** While the world stands, the drawn time rests this far behind the server's; null while it runs. */
+  private restS: number | null = null;
 
   /** `cushionS` is kept beyond the deviation of arrivals, and never less than `leastS` at all. */
   constructor(
@@ -54,15 +56,22 @@ export class Playout {
    */
   advance(serverNowS: number, frameS: number, rate = 1): number {
     this.stands = rate === 0;
-    if (this.stands) return this.comeToRest(serverNowS - this.delayS, frameS);
+    if (this.stands) return this.comeToRest(serverNowS, frameS);
+    this.restS = null;
     this.changeRate(rate);
     return this.run(serverNowS - this.delayS, frameS * rate);
   }
 
-  /** The world stands: go on to where it stands, and no further. */
-  private comeToRest(aimS: number, frameS: number): number {
-    const before = this.timeS_ ?? aimS;
-    this.timeS_ = before + Math.max(0, Math.min(frameS, aimS - before));
+  /**
+   * The world stands: go on to where it stands, and no further. If the delay has just grown, the
+   * picture is ahead of its aim: then it rests that much nearer to the world, so that all of the
+   * ticks that are run meanwhile are drawn.
+   */
+  private comeToRest(serverNowS: number, frameS: number): number {
+    const before = this.timeS_ ?? serverNowS - this.delayS;
+    this.restS ??= Math.min(this.delayS, serverNowS - before);
+    const aheadS = serverNowS - this.restS - before;
+    this.timeS_ = before + Math.max(0, Math.min(frameS, aheadS));
     return this.timeS_;
   }
 

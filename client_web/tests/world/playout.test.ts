@@ -70,6 +70,18 @@ describe("Playout", () => {
     expect(next - before).toBeLessThanOrEqual(0.016 * 1.1);
   });
 
+  it("draws all ticks of a paused world although the delay has just grown", () => {
+    const playout = fed(20, () => 0.02);
+    playout.advance(1, 0.016);
+    for (let tick = 20; tick < 30; tick++) playout.arrived(tick * TICK_S, tick * TICK_S + 1);
+    expect(playout.delayS).toBeGreaterThan(0.7);
+    let rested = playout.advance(1, 0.016, 0);
+    for (let frame = 1; frame < 40; frame++) rested = playout.advance(1, 0.016, 0);
+    let stepped = rested;
+    for (let frame = 1; frame < 40; frame++) stepped = playout.advance(1.5, 0.016, 0);
+    expect(stepped - rested).toBeCloseTo(0.5);
+  });
+
   it("takes messages to be later in a world that runs faster", () => {
     const playout = fed(200, () => 0.02);
     playout.advance(10, 0.016, 4);
