@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, TypeAdapter, ValidationError
 
-from esplanade.protocol.messages import Line, WalkTo
+from esplanade.protocol.messages import Line, Report, WalkTo
 
 MAGIC: Final = b"EB"
 VERSION: Final = 1
@@ -50,8 +50,11 @@ _Rest = tuple[
     list[tuple[Number, Number, str, bool]],  # doors
     list[Held],  # stood
     list[tuple[Number, Number, Muted]],
+    list[tuple[Number, Number, Report]],
 ]
 _REST: Final = TypeAdapter(_Rest)
+_WITHOUT_REPORTS: Final = 9
+"""Parts of a batch in which nobody is reported."""
 
 
 class BatchError(ValueError):
@@ -83,6 +86,9 @@ class Batch:
     """Persons whose clients have fallen silent, and whose avatars are to stand."""
     muted: list[tuple[int, int, list[int]]] = field(default_factory=list)
     """Whom persons do not want to hear from now on, all of them."""
+    reports: list[tuple[int, int, Report]] = field(default_factory=list)
+    """What persons tell those who look after the world; a batch without any says nothing of it, as
+    hosts of before read it."""
 
 
 def encode_batch(batch: Batch) -> bytes:
@@ -99,6 +105,9 @@ def encode_batch(batch: Batch) -> bytes:
         batch.stood,
         batch.muted,
     ]
+    if batch.reports:
+        told = [(person, generation, one.model_dump()) for person, generation, one in batch.reports]
+        rest.append(told)
     packed: bytes = msgpack.packb(rest)
     return head + batch.movements.tobytes() + packed
 
@@ -127,7 +136,7 @@ def decode_batch(message: bytes) -> Batch:
     ):
         raise BatchError("a movement is not finite")
     rest = _read_rest(message[end:])
-    gateway, held, departed, walks, lines, watched, doors, stood, muted = rest
+    gateway, held, departed, walks, lines, watched, doors, stood, muted, reports = rest
     return Batch(
         gateway,
         number,
@@ -141,12 +150,16 @@ def decode_batch(message: bytes) -> Batch:
         doors,
         stood,
         muted,
+        reports,
     )
 
 
 def _read_rest(packed: bytes) -> _Rest:
     try:
-        return _REST.validate_python(msgpack.unpackb(packed))
+        rest = msgpack.unpackb(packed)
+        if isinstance(rest, list) and len(rest) == _WITHOUT_REPORTS:
+            rest.append([])
+        return _REST.validate_python(rest)
     except ValidationError as error:
         first = error.errors(include_url=False, include_input=False)[0]
         where = " / ".join(str(part) for part in first["loc"])

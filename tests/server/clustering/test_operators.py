@@ -20,6 +20,7 @@ from esplanade.protocol.messages import (
     Hide,
     MutePerson,
     Notice,
+    Report,
     ServerMessage,
     Travel,
 )
@@ -232,7 +233,11 @@ async def test_people_are_told_muted_and_sent_out(at_town: Cluster) -> None:
         assert (await notice(ben, NoticeCode.MUTED)).arguments["seconds"] == 600
         await ben.send(ChatLine(text="I do not"))
         assert (await ben.until(Error)).error is ErrorCode.MUTED
-        # A mute holds at another gateway and at another host.
+        await ann.send(Report(id=ben.id, text="shouts at me"))
+        assert (await notice(ann, NoticeCode.REPORT_TAKEN)).arguments == {"id": ben.id}
+        (report,) = (await mona.get("/reports"))[1]["reports"]
+        assert (report["name"], report["text"], report["state"]) == ("Ben", "shouts at me", "open")
+        # A mute and a report hold at another gateway and at another host.
         epoch = at_town.owner("yard")[1]
         at_town.owning("yard").kill()
         await at_town.taken_over("yard", epoch)
@@ -240,6 +245,9 @@ async def test_people_are_told_muted_and_sent_out(at_town: Cluster) -> None:
         assert ben.welcome is not None
         async with back(east.port, ben.welcome.resume) as again:
             assert again.id == ben.id
+            settle = {"op": "settle_report", "report": report["id"], "note": "talked to Ben"}
+            await settled(lambda: mona.send(settle))
+            assert (await mona.get("/reports"))[1]["reports"][0]["state"] == "done"
             await again.send(ChatLine(text="nor here"))
             assert (await again.until(Error)).error is ErrorCode.MUTED
             await ann.send(ChatLine(text="thank you"))

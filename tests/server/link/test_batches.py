@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 
-from esplanade.protocol.messages import WalkTo
+from esplanade.protocol.messages import Report, WalkTo
 from esplanade.server.link.answers import (
     MOST_BYTES,
     Answer,
@@ -41,6 +41,7 @@ def full_batch() -> Batch:
         [(8, 1, "gate", True)],
         [(12, 1)],
         [(7, 2, [8, 9]), (8, 1, [])],
+        [(7, 2, Report(id=8, line=2**40, text="is rude")), (8, 1, Report(id=9, text="?"))],
     )
 
 
@@ -50,6 +51,13 @@ def test_a_batch_comes_out_as_it_was() -> None:
     assert again.movements.tobytes() == batch.movements.tobytes()
     for name in Batch.__dataclass_fields__.keys() - {"movements"}:
         assert getattr(again, name) == getattr(batch, name), name
+
+
+def test_hosts_of_before_read_a_batch_in_which_nobody_is_reported() -> None:
+    parts = ["east", [], [], [], [], [], [], [], []]
+    assert encode_batch(Batch("east", 1, 1)).endswith(msgpack.packb(parts))
+    with_one = Batch("east", 1, 1, reports=[(7, 2, Report(id=8, text="is rude"))])
+    assert not encode_batch(with_one).endswith(msgpack.packb(parts))
 
 
 def test_an_empty_batch_is_small() -> None:
