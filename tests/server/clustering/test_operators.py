@@ -57,6 +57,16 @@ async def notice(client: Client, code: NoticeCode) -> Notice:
             return said
 
 
+async def reports(moderator: Operator) -> list[dict[str, Any]]:
+    """The reports in the inbox of a zone, as soon as there are any."""
+    async with asyncio.timeout(PATIENCE_S):
+        while True:
+            found = await settled(lambda: moderator.get("/reports"))
+            if found["reports"]:
+                return list(found["reports"])
+            await asyncio.sleep(0.1)
+
+
 def weight(values: dict[str, Any]) -> float:
     return float(values["risk_weight"])
 
@@ -235,7 +245,8 @@ async def test_people_are_told_muted_and_sent_out(at_town: Cluster) -> None:
         assert (await ben.until(Error)).error is ErrorCode.MUTED
         await ann.send(Report(id=ben.id, text="shouts at me"))
         assert (await notice(ann, NoticeCode.REPORT_TAKEN)).arguments == {"id": ben.id}
-        (report,) = (await mona.get("/reports"))[1]["reports"]
+        (report,) = await reports(mona)
+        assert await reports(Operator(mona.port, mona.token, "hall")) == [report]
         assert (report["name"], report["text"], report["state"]) == ("Ben", "shouts at me", "open")
         # A mute and a report hold at another gateway and at another host.
         epoch = at_town.owner("yard")[1]
@@ -245,6 +256,7 @@ async def test_people_are_told_muted_and_sent_out(at_town: Cluster) -> None:
         assert ben.welcome is not None
         async with back(east.port, ben.welcome.resume) as again:
             assert again.id == ben.id
+            assert await reports(mona) == [report]
             settle = {"op": "settle_report", "report": report["id"], "note": "talked to Ben"}
             await settled(lambda: mona.send(settle))
             assert (await mona.get("/reports"))[1]["reports"][0]["state"] == "done"
