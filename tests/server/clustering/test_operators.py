@@ -67,6 +67,17 @@ async def reports(moderator: Operator) -> list[dict[str, Any]]:
             await asyncio.sleep(0.1)
 
 
+async def _until(ask: Callable[[], Awaitable[Any]], holds: Callable[[Any], bool]) -> None:
+    """Ask again until it holds."""
+    async with asyncio.timeout(PATIENCE_S):
+        while not holds(await ask()):  # noqa: ASYNC110 - nothing tells of it
+            await asyncio.sleep(0.1)
+
+
+async def _of_world(asked: Operator, name: str) -> Any:
+    return (await settled(lambda: asked.get("/world")))[name]
+
+
 def weight(values: dict[str, Any]) -> float:
     return float(values["risk_weight"])
 
@@ -112,6 +123,42 @@ async def test_what_is_set_holds_after_another_host_has_taken_the_zone(at_town: 
     words = ["op", "audit", "--command", "revert", "--store", at_town.database]
     listed = await asyncio.to_thread(said, words)
     assert "revert" in listed.output
+
+
+async def test_all_that_goes_on_goes_on_at_another_host(at_town: Cluster) -> None:
+    olga = at_town.operator("admin", zone="yard")
+    risk = {"op": "set_parameters", "scope": "world", "values": {"risk_weight": 4}}
+    ramp = {**risk, "values": {"foresight_s": 4.0}, "over_s": 3600.0}
+    for command in (
+        {**risk, "guard": {"figure": "people", "above": 500}},
+        {"op": "schedule", "when": {"after_s": 3600}, "commands": [risk]},
+        {"op": "pace", "factor": 0.5},
+        {"op": "move_door", "door": "shed", "open": False},
+        ramp,
+    ):
+        status, answer = await olga.send(command)
+        assert status == 200, answer
+    _, before = await olga.get("/schedules")
+    at_first = (await olga.values("yard/actor-1"))["foresight_s"]
+    epoch = at_town.owner("yard")[1]
+    at_town.owning("yard").kill()
+    await at_town.taken_over("yard", epoch)
+    world = await settled(lambda: olga.get("/world"))
+    assert world["pace"]["factor"] == 0.5
+    await _until(lambda: _of_world(olga, "doors"), {"shed": False}.__eq__)
+    _, after = await olga.get("/schedules")
+    assert (after["schedules"], after["guards"]) == (before["schedules"], before["guards"])
+    assert weight(await olga.values("yard/actor-1")) == 4.0
+    await _until(lambda: olga.values("yard/actor-1"), lambda now: now["foresight_s"] != at_first)
+    for command in (
+        {"op": "revert", "change": answer["command"]},
+        {"op": "revert"},
+        {"op": "pace", "factor": 1.0},
+        {"op": "move_door", "door": "shed", "open": True},
+        {"op": "cancel_schedule", "id": after["schedules"][0]["id"]},
+    ):
+        status, answer = await olga.send(command)
+        assert status == 200, answer
 
 
 async def test_an_owner_that_was_frozen_carries_out_no_command(at_town: Cluster) -> None:
