@@ -1,6 +1,8 @@
 /** The numbers and names on the wire; the same table as `protocol/codes.py`. */
 
-export const VERSION = 4;
+export const VERSION = 5;
+/** The oldest version that this client falls back on. */
+export const OLDEST_VERSION = 4;
 
 export const MAX_NAME_CHARS = 32;
 export const MAX_CHAT_CHARS = 300;
@@ -15,6 +17,8 @@ export const ClientCode = {
   SET_DOOR: 7,
   REPORT: 8,
   MUTE: 9,
+  PRESENCE: 10,
+  GESTURE: 11,
 } as const;
 
 export const ServerCode = {
@@ -35,6 +39,8 @@ export const ServerCode = {
   RESHAPE: 78,
   HIDE: 79,
   TRAVEL: 80,
+  AWAY: 81,
+  GESTURE: 82,
 } as const;
 
 export const Reason = {
@@ -45,6 +51,16 @@ export const Reason = {
   REPLANNING: 4,
   NO_PATH: 5,
   ARRIVED: 6,
+} as const;
+
+/** The gestures of avatars. */
+export const Gesture = {
+  WAVE: 1,
+  NOD: 2,
+  POINT: 3,
+  CLAP: 4,
+  DANCE: 5,
+  RAISE_HAND: 6,
 } as const;
 
 /** How the trip of an actor ended. */
