@@ -42,15 +42,19 @@ OPENINGS: Final = {
     "plan": "() => document.querySelector('#plan-open').click()",
     "chat": """() => { const toggle = document.querySelector('#chat-toggle');
       if (toggle.checkVisibility()) toggle.click(); }""",
-    "told": """() => { for (const id of ['banner', 'pace', 'invitation']) {
+    "told": """() => { for (const id of ['banner', 'pace', 'following', 'invitation']) {
       const told = document.getElementById(id);
-      if (id !== 'invitation') told.textContent = 'The connection was lost. Coming back by itself…';
+      if (id === 'banner' || id === 'pace')
+        told.textContent = 'The connection was lost. Coming back by itself…';
       told.hidden = false; } }""",
     "person": "() => { document.querySelector('#person').hidden = false; }",
+    "report": """() => { document.querySelector('#person').hidden = false;
+      document.querySelector('#person-report').open = true; }""",
 }
 CLOSED: Final = """() => {
   for (const opener of document.querySelectorAll('[aria-expanded="true"]')) opener.click();
-  for (const id of ['banner', 'pace', 'invitation', 'person'])
+  document.querySelector('#person-report').open = false;
+  for (const id of ['banner', 'pace', 'following', 'invitation', 'person'])
     document.getElementById(id).hidden = true;
 }"""
 

@@ -35,7 +35,7 @@ interface Seen extends Omit<Avatar, "animator"> {
   readonly pointing: boolean;
 }
 
-function seen({ id, kind, name, radius, own, pose, animator }: Avatar): Seen {
+function seen({ id, kind, name, radius, own, pose, away, animator }: Avatar): Seen {
   const { left, right } = animator.body;
   const pointing = animator.pointing.target !== null;
   const drawn = animator.planted ? animator.step : null;
@@ -44,7 +44,7 @@ function seen({ id, kind, name, radius, own, pose, animator }: Avatar): Seen {
     tick: drawn.tick,
   };
   const feet = { left: left.foot, right: right.foot };
-  return { id, kind, name, radius, own, pose, feet, step, pointing };
+  return { id, kind, name, radius, own, pose, away, feet, step, pointing };
 }
 
 declare global {
