@@ -16,14 +16,14 @@ import { NoticeBanner } from "../ui/notices";
 import { Panel } from "../ui/panels";
 import { PaceBanner } from "../ui/pace";
 import { PlanPanel } from "../ui/plan";
-import { faultOf, noticeOf } from "../ui/sentences";
+import { arrivalIn, faultOf, greetingOf, noticeOf } from "../ui/sentences";
 import { StatusChip } from "../ui/status";
 import { World } from "../world/world";
 import type { AddressWish } from "./address";
 import { Cost } from "./cost";
+import { Manners } from "./manners";
 import { Others } from "./others";
 import type { Picked, Picture } from "./picture";
-import { Presence } from "./presence";
 import { Walking } from "./walking";
 
 const PANELS_MS = 200;
@@ -46,8 +46,8 @@ export class Session {
   private readonly status = new StatusChip();
   private readonly pace = new PaceBanner();
   private readonly minimap: Minimap;
+  private readonly manners: Manners;
   private readonly others: Others;
-  private readonly presence: Presence;
   private readonly notices = new NoticeBanner();
   private readonly planPanel = new PlanPanel();
   private readonly planSwitch: Panel;
@@ -72,6 +72,8 @@ export class Session {
     private readonly view: Picture,
     private readonly seats: Seats,
     socketUrl: string,
+    /** Whether the person wants little motion. */
+    calm: boolean,
     wish: Pick<AddressWish, "operator" | "admission" | "at" | "lookYaw">,
   ) {
     this.operator = wish.operator;
@@ -125,9 +127,7 @@ export class Session {
     this.minimap = new Minimap((at) => {
       this.act(at);
     });
-    this.presence = new Presence(document, (away) => {
-      this.connection.send({ type: "presence", away });
-    });
+    this.manners = new Manners((message) => this.connection.send(message), calm);
   }
 
   /** Rejoin at once after a reload; otherwise ask for a name. */
@@ -187,7 +187,7 @@ export class Session {
       this.join.close();
       this.chat.note(this.travels ? arrivalIn(this.welcome) : greetingOf(this.welcome));
       this.travels = false;
-      if (this.presence.away) this.connection.send({ type: "presence", away: true });
+      this.manners.begin(this.welcome);
     }
     if (state.phase === "reconnecting") this.join.wait(state.text);
     if (state.phase === "refused") {
@@ -264,8 +264,12 @@ export class Session {
       case "travel":
         this.travels = true;
         break;
-      case "bye":
       case "gesture":
+        if (world && !this.others.isMuted(world.avatars.get(message.id)?.name ?? "")) {
+          this.manners.show(message.id, message.gesture, world, this.view);
+        }
+        break;
+      case "bye":
       case "pong":
         break;
     }
@@ -391,12 +395,4 @@ export class Session {
     const { avatars, own, doors, plan } = world;
     this.minimap.update(avatars, own, doors, this.view.camera.yaw, plan);
   }
-}
-
-function greetingOf({ name, resumed }: Welcome): string {
-  return resumed ? `Welcome back, ${name}.` : `Welcome, ${name}. See Help for how to get about.`;
-}
-
-function arrivalIn({ scene }: Welcome): string {
-  return `You have come to ${scene.name}.`;
 }

@@ -1,5 +1,7 @@
 /** The numbers and names on the wire; the same table as `protocol/codes.py`. */
 
+import type { GestureName } from "./messages";
+
 export const VERSION = 5;
 /** The oldest version that this client falls back on. */
 export const OLDEST_VERSION = 4;
@@ -62,6 +64,11 @@ export const Gesture = {
   DANCE: 5,
   RAISE_HAND: 6,
 } as const;
+
+/** The names of gestures by their numbers; a server may know more of them. */
+export const GESTURE_NAMES = new Map<number, GestureName>(
+  Object.entries(Gesture).map(([name, number]) => [number, name.toLowerCase() as GestureName]),
+);
 
 /** How the trip of an actor ended. */
 export const Outcome = {

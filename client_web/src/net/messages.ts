@@ -37,6 +37,9 @@ export interface Admission {
   secret: string;
 }
 
+/** The gestures of avatars, by name. */
+export type GestureName = "wave" | "nod" | "point" | "clap" | "dance" | "raise_hand";
+
 /** Whether each door stands open, by name. */
 export type Doors = Record<string, boolean>;
 

@@ -4,6 +4,7 @@ import type {
   Doors,
   EntityInfo,
   EntityRecord,
+  GestureName,
   Place,
   Plan,
   SceneData,
@@ -161,6 +162,11 @@ export class World {
     if (!animator) return;
     const [x, y, z] = target ?? [0, 0, 0];
     animator.pointing.target = target && { x, y, z };
+  }
+
+  /** Somebody makes a gesture; `calm` holds it still. */
+  gesture(id: number, gesture: GestureName, calm: boolean): void {
+    this.avatars_.get(id)?.animator.gesturing.start(gesture, calm);
   }
 
   /** The person of an avatar is away from now on, or there again. */
