@@ -128,6 +128,19 @@ class ZoneWishes:
             text = f"you have muted {MOST_MUTED} people, no more can be at once"
             session.tell(ProtocolError(ErrorCode.FLOODING, text, None))
 
+    def presence(self, session: Session, away: bool) -> None:
+        """Let everyone who has the person in view know that they are away, or there again."""
+        who = self._of(session)
+        if who is not None:
+            who.away = away
+            self._upward.be_away(who, away)
+
+    def gesture(self, session: Session, gesture: int) -> None:
+        """Let the person's avatar make a gesture in the next tick."""
+        who = self._of(session)
+        if who is not None:
+            self._upward.make_gesture(who, gesture)
+
     def _of(self, session: Session) -> Occupant | None:
         """The occupation of a session whose seat is in the zone."""
         if session.avatar_id is None:

@@ -22,7 +22,7 @@ from esplanade.server.net.pending_inputs import PendingInputs
 from esplanade.server.net.reporting import Reporting
 from esplanade.server.net.route_requests import RouteRequests
 from esplanade.server.net.waiting_lines import WaitingLines
-from esplanade.server.world.inputs import Say, Watch
+from esplanade.server.world.inputs import MakeGesture, Say, SetAway, Watch
 from esplanade.server.world.zone import Zone
 
 MOST_WALKS: Final = 4096
@@ -88,6 +88,7 @@ class GatewayBatches:
         self._take_ways(batch)
         self._take_words(batch)
         self._take_reports(batch, now_s)
+        self._take_manners(batch)
         for person, generation, comes_back in batch.departed:
             self._walks.pop(person, None)
             self._people.depart(person, generation, comes_back=comes_back)
@@ -154,6 +155,15 @@ class GatewayBatches:
             guest = self._people.guests.get(person)
             if self._steers(person, generation) and guest is not None:
                 self._reporting.take(guest, report, now_s)
+
+    def _take_manners(self, batch: Batch) -> None:
+        """Take in who is away from the screen, and which gestures people make."""
+        for person, generation, away in batch.presences:
+            if self._steers(person, generation):
+                self._pending.be_away(SetAway(person, away))
+        for person, generation, gesture in batch.gestures:
+            if self._steers(person, generation):
+                self._pending.make_gesture(MakeGesture(person, gesture))
 
     def _steers(self, person: int, generation: int) -> bool:
         if self._people.occupations.may_steer(person, generation):

@@ -59,6 +59,10 @@ class Events:
     """The places that actors point at since this tick, by their ids; None for none any more."""
     chat: list[Line] = field(default_factory=list)
     """In the order in which people spoke; of somebody who left in this tick, before they did."""
+    gestures: Mapping[int, int] = field(default_factory=dict)
+    """The gesture that each of these avatars begins in this tick, by its id."""
+    away: Mapping[int, bool] = field(default_factory=dict)
+    """Avatars whose people are away since this tick, or there again; at first all are there."""
     plans: Mapping[int, bytes] = field(default_factory=dict)
     """Of the actors that somebody watches and whose turn it is, by their ids: packed messages."""
 
@@ -105,6 +109,7 @@ class Recorder:
         self._records = np.zeros(state.capacity, dtype=RECORD)
         self._arrivals = np.zeros(state.capacity, dtype=np.int64)
         self._bodies = np.zeros((state.capacity, 3))
+        self._away = np.zeros(state.capacity, dtype=np.bool_)
 
     def entered(self) -> list[Entered]:
         """The avatars that came into the world since the last call."""
@@ -115,6 +120,7 @@ class Recorder:
         # Whoever has come back to the same place has its record told all the same.
         self._records[new] = np.zeros(1, dtype=RECORD)
         self._bodies[new] = self._bodies_of(new)
+        self._away[new] = False
         return [self._describe(slot) for slot in new[np.argsort(state.ids[new])].tolist()]
 
     def reshaped(self) -> list[Reshaped]:
@@ -131,6 +137,14 @@ class Recorder:
                 live[changed].tolist(), bodies[changed].tolist(), strict=True
             )
         ]
+
+    def away(self) -> dict[int, bool]:
+        """Avatars whose people have gone away since the last call, or are there again, by id."""
+        state = self._state
+        live = state.live()
+        changed = live[self._away[live] != state.away[live]]
+        self._away[changed] = state.away[changed]
+        return dict(zip(state.ids[changed].tolist(), state.away[changed].tolist(), strict=True))
 
     def _bodies_of(self, slots: Slots) -> Floats:
         """Radius, leg and stature, float64 (N, 3), metres."""

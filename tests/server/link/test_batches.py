@@ -1,6 +1,7 @@
 """Batches and answers go over the network and come out as they were; anything else is refused."""
 
 from contextlib import suppress
+from dataclasses import replace
 
 import hypothesis.strategies as st
 import msgpack
@@ -42,6 +43,8 @@ def full_batch() -> Batch:
         [(12, 1)],
         [(7, 2, [8, 9]), (8, 1, [])],
         [(7, 2, Report(id=8, line=2**40, text="is rude")), (8, 1, Report(id=9, text="?"))],
+        [(7, 2, True)],
+        [(8, 1, 3)],
     )
 
 
@@ -53,11 +56,13 @@ def test_a_batch_comes_out_as_it_was() -> None:
         assert getattr(again, name) == getattr(batch, name), name
 
 
-def test_hosts_of_before_read_a_batch_in_which_nobody_is_reported() -> None:
-    parts = ["east", [], [], [], [], [], [], [], []]
-    assert encode_batch(Batch("east", 1, 1)).endswith(msgpack.packb(parts))
-    with_one = Batch("east", 1, 1, reports=[(7, 2, Report(id=8, text="is rude"))])
-    assert not encode_batch(with_one).endswith(msgpack.packb(parts))
+def test_older_programs_read_batches_without_anything_of_newer_ones() -> None:
+    older = replace(full_batch(), reports=[], presences=[], gestures=[])
+    assert msgpack.unpackb(encode_batch(older)[24 + older.movements.nbytes :])[9:] == []
+    newer = encode_batch(full_batch())
+    rest = msgpack.unpackb(newer[24 + older.movements.nbytes :])
+    rest[9]["of a later version"] = [1]
+    assert decode_batch(newer[: 24 + older.movements.nbytes] + msgpack.packb(rest)).gestures
 
 
 def test_an_empty_batch_is_small() -> None:
