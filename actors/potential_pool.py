@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import astuple, dataclass, replace
-from functools import partial
+from functools import lru_cache, partial
 from typing import Any
 
 import numpy as np
@@ -390,10 +390,11 @@ def potential_of(grid: LayeredGrid, key: GoalKey | DetourKey) -> NDArray[np.floa
     ).values
 
 
-def plain_key(key: GoalKey | DetourKey) -> list[Any]:
-    """A key as plain data, of which `key_of` makes it again."""
+@lru_cache(maxsize=4096)
+def plain_key(key: GoalKey | DetourKey) -> tuple[Any, ...]:
+    """A key as plain data, of which `key_of` makes it again; kept, since goals stay."""
     x, y, z_m, kind, *more = key
-    return [x, y, z_m, list(astuple(kind)), *(plain_around(each) for each in more)]
+    return (x, y, z_m, astuple(kind), *(plain_around(each) for each in more))
 
 
 def key_of(plain: Sequence[Any]) -> GoalKey | DetourKey:

@@ -114,8 +114,8 @@ class ExactState:
         with_people, among_actors = saved["contacts"]["counts"]
         p.contacts.actor_person, p.contacts.actor_actor = int(with_people), int(among_actors)
         p.contacts.touching = np.array(saved["contacts"]["touching"], dtype=np.int64)
-        p.feet.load(saved["feet"])
         p.steps.load(p.state.live(), saved["steps"])
+        p.feet.load(saved["feet"])
         p.told.load(saved["told"])
 
     def _move_doors(self, saved: Mapping[str, Any]) -> None:

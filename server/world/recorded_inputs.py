@@ -222,9 +222,9 @@ def _in_words(item: Input) -> Any:
         case DoorDerived():
             said = RecordedDoor(item.change.name, item.change.is_open)
         case PotentialDerived():
-            said = RecordedPotential(plain_key(item.potential.goal), item.potential.changes)
+            said = RecordedPotential(list(plain_key(item.potential.goal)), item.potential.changes)
         case ActorsDerived():
-            goals = [plain_key(key) for key in item.potentials]
+            goals = [list(plain_key(key)) for key in item.potentials]
             said = RecordedDerivation(item.command, goals, item.places, item.fault)
     return said
 

@@ -58,13 +58,18 @@ class Feet:
         self._update(tick, still=True)
 
     def save(self) -> dict[str, Any]:
-        """Everyone's feet, as copies of arrays in the order of the live slots."""
+        """Everyone's feet but their steps, which follow from the records that were sent of them.
+
+        They are copies of arrays in the order of the live slots.
+        """
         live = self._state.live()
         stood = {"arrivals": self._arrivals[live], "scales": self._scales[live]}
-        return {**stood, "walkers": self._walkers.save(live), "failed": self._failed}
+        feet = self._walkers.save(live)
+        own = {name: column for name, column in feet.items() if name not in Steps._fields}
+        return {**stood, "walkers": own, "failed": self._failed}
 
     def load(self, saved: Mapping[str, Any]) -> None:
-        """Give everyone who is in the state the feet that were saved.
+        """Give everyone who is in the state the feet that were saved; their steps are known.
 
         Raises
         ------
@@ -74,7 +79,8 @@ class Feet:
         live = self._state.live()
         self._arrivals[:], self._scales[:] = 0, 1.0
         self._arrivals[live], self._scales[live] = saved["arrivals"], saved["scales"]
-        self._walkers.load(live, saved["walkers"])
+        steps = from_records(self._latest.records[live])
+        self._walkers.load(live, {**saved["walkers"], **steps._asdict()})
         self._failed = int(saved["failed"])
 
     def _update(self, tick: int, *, still: bool) -> None:
