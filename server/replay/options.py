@@ -10,10 +10,10 @@ from esplanade.commandline.trajectory_files import check_suffix
 
 EPILOG: Final = """\
 examples:
-  esplanade serve --record recordings              writes recordings/gallery.mcap as the world runs
-  esplanade replay recordings/gallery.mcap --verify
-  esplanade replay recordings/gallery.mcap --trajectories walks.csv --hz 10
-  esplanade replay recordings/gallery.mcap --info
+  esplanade serve --record kept              writes kept/gallery.mcap as the world runs
+  esplanade replay kept/gallery.mcap --verify
+  esplanade replay kept/gallery.mcap --trajectories walks.csv --hz 10
+  esplanade replay kept/gallery.mcap --info
 
 a recording has all inputs of a zone, so that it runs again bit for bit: with the same program, and
 on the same kind of processor. --verify compares it with digests that stand in it, each second. A
