@@ -60,12 +60,17 @@ class DerivedRows:
     def take_all(self, table: AgentTable) -> None:
         """Take all rows of all actors, who have none."""
         agents = table.agents
-        agents.bodies[:] = self.claim([body_of(record) for record in agents.parameters])
-        agents.contacts[:] = self.contacts(agents.parameters)
+        self.take_bodies(table)
         for row in range(len(table)):
             target = table.wanted(row)
             slot = -1 if target is None else self._potential(table, row, target)
             table.trips.own_rows[row] = agents.potential_rows[row] = slot
+
+    def take_bodies(self, table: AgentTable) -> None:
+        """Take the rows of all actors that go by their bodies, and none of potentials."""
+        agents = table.agents
+        agents.bodies[:] = self.claim([body_of(record) for record in agents.parameters])
+        agents.contacts[:] = self.contacts(agents.parameters)
 
     def head_for(self, table: AgentTable, row: int, target: Goal | None) -> None:
         """Let an actor go by the potential of a goal, or by none."""

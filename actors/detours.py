@@ -126,6 +126,20 @@ class Detours:
                 self._around.restore(key, shut, wanted, derived_s)
         self.lead(table)
 
+    def save_exactly(self) -> list[list[Any]]:
+        """All ways with the rows of their potentials, as plain data."""
+        return self._around.save()
+
+    def load_exactly(self, saved: Sequence[Sequence[Any]]) -> None:
+        """Have these ways, whose potentials are there; columns of the table say who goes them.
+
+        Raises
+        ------
+        ValueError, TypeError
+            It is not what `save_exactly` gives.
+        """
+        self._around.load(saved)
+
     def lead(self, table: AgentTable) -> None:
         """Let all actors that go around people go by those potentials, as far as they are there."""
         for row in np.flatnonzero(table.trips.detours).tolist():

@@ -392,13 +392,7 @@ class Navigator:
         SavedAgentsError
             The table cannot be read, or was planned with another horizon; nothing is changed then.
         """
-        table = AgentTable.load(header, arrays)
-        if table.agents.planned.shape[1] != self.plan.slices + 1:
-            raise SavedAgentsError(
-                f"saved agents plan {table.agents.planned.shape[1] - 1} slices ahead, "
-                f"this zone {self.plan.slices}"
-            )
-        check_saved(table, self.grid)
+        table = self._checked_table(header, arrays)
         standing = StandingPeople()
         try:
             standing.load(header.get("standing", ()))
@@ -414,6 +408,71 @@ class Navigator:
         self.tracing.forget()
         self._rows.take_all(table)
         self.detours.load(table, detours)
+        self._rank()
+
+    def _checked_table(
+        self, header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]
+    ) -> AgentTable:
+        table = AgentTable.load(header, arrays)
+        if table.agents.planned.shape[1] != self.plan.slices + 1:
+            raise SavedAgentsError(
+                f"saved agents plan {table.agents.planned.shape[1] - 1} slices ahead, "
+                f"this zone {self.plan.slices}"
+            )
+        check_saved(table, self.grid)
+        return table
+
+    def save_exactly(self) -> dict[str, Any]:
+        """Everything that later ticks depend on, bit for bit, as plain data and copies of arrays.
+
+        Beside what `save` gives these are the past of people, cells, and potentials as they are
+        while the ground has changed and not all are derived anew.
+
+        Raises
+        ------
+        TypeError
+            As of `AgentTable.save`.
+        """
+        header, columns = self.table.save()
+        agents, trips = self.table.agents, self.table.trips
+        return {
+            "table": header,
+            "columns": columns,
+            "rows": np.column_stack([trips.own_rows, agents.potential_rows]),
+            "planning": self.planning_interval.save(),
+            "standing": self._standing.save_exactly(),
+            "tracks": self._history.save(),
+            "potentials": self.potentials.save(),
+            "detours": self.detours.save_exactly(),
+        }
+
+    def load_exactly(self, saved: Mapping[str, Any]) -> None:
+        """Go on bit for bit from what `save_exactly` gave, in the place of all actors here.
+
+        Raises
+        ------
+        ValueError, KeyError, TypeError
+            Something is missing, or cannot be. Nothing is to be done with this navigator then.
+        """
+        table = self._checked_table(saved["table"], saved["columns"])
+        cells = np.asarray(saved["columns"]["cells"])
+        if ((cells < -1) | (cells >= len(self.grid.layered.floors))).any():
+            raise SavedAgentsError("column 'cells' of saved agents has a value that cannot be")
+        table.agents.cells[:] = cells
+        table.agents.layers[:] = saved["columns"]["layers"]
+        self._rows.give_back(self.table)
+        self.table = table
+        self.tracing.forget()
+        self._rows.take_bodies(table)
+        self.potentials.load(saved["potentials"])
+        rows = np.asarray(saved["rows"], dtype=np.int64).reshape(len(table), 2)
+        if ((rows < -1) | (rows >= len(self.potentials.users))).any():
+            raise SavedAgentsError("a saved agent goes by a potential that is not there")
+        table.trips.own_rows[:], table.agents.potential_rows[:] = rows.T
+        self.detours.load_exactly(saved["detours"])
+        self.planning_interval.load(saved["planning"])
+        self._standing.load_exactly(saved["standing"])
+        self._history.load(saved["tracks"])
         self._rank()
 
     # --- ticks ---------------------------------------------------------------------------

@@ -309,11 +309,22 @@ class Population:
         if len(np.unique(wanted, axis=0)) > _DERIVED_AT_ONCE:
             self.derive_outside()
         self.navigator.load(saved["table"], saved["columns"])
-        ids, minds, held = self.table.ids, saved["minds"], set(saved["held"])
-        if not held <= set(ids):
-            raise ValueError("an actor is held that is not there")
         if not math.isfinite(saved["time_s"]) or saved["time_s"] < 0.0:
             raise ValueError(f"time_s: {saved['time_s']}")
+        self._load_minds(saved["minds"], behaviours, set(saved["held"]))
+        self.ended = dict(zip(Outcome, map(int, saved["trips"]), strict=True))
+        self._tick = round(saved["time_s"] / self.navigator.tick_s)
+
+    def _load_minds(
+        self,
+        minds: Sequence[bytes],
+        behaviours: Mapping[Hashable, Behaviour],
+        held: set[Hashable],
+    ) -> None:
+        """Let the behaviours of all actors in the table go on, and those who are held stand."""
+        ids = self.table.ids
+        if not held <= set(ids):
+            raise ValueError("an actor is held that is not there")
         self._behaviours = {actor_id: behaviours[actor_id] for actor_id in ids}
         self._generators = {actor_id: self.generator(actor_id) for actor_id in ids}
         for actor_id, packed in zip(ids, minds, strict=True):
@@ -323,9 +334,39 @@ class Population:
             for x, y, z_m in behaviour.places():
                 self.navigator.check_place((x, y), z_m)
         self._held = held
-        self.ended = dict(zip(Outcome, map(int, saved["trips"]), strict=True))
-        self._tick = round(saved["time_s"] / self.navigator.tick_s)
         self._minds.change_all()
+
+    def save_exactly(self) -> dict[str, Any]:
+        """Everything that later ticks of these actors depend on, bit for bit.
+
+        Raises
+        ------
+        TypeError
+            As of `save`.
+        """
+        return {
+            "ticks": self._tick,
+            "trips": [self.ended[outcome] for outcome in Outcome],
+            "held": sorted(self._held, key=str),
+            "minds": self._minds.save(self._behaviours, self._generators),
+            "navigator": self.navigator.save_exactly(),
+        }
+
+    def load_exactly(
+        self, saved: Mapping[str, Any], behaviours: Mapping[Hashable, Behaviour]
+    ) -> None:
+        """Go on bit for bit from what `save_exactly` gave; as `load`.
+
+        Raises
+        ------
+        ValueError, KeyError, TypeError
+            Something is missing, or cannot be. Nothing is to be done with this population then.
+        """
+        self.navigator.load_exactly(saved["navigator"])
+        self._placing.ground_changed()
+        self._load_minds(saved["minds"], behaviours, set(saved["held"]))
+        self.ended = dict(zip(Outcome, map(int, saved["trips"]), strict=True))
+        self._tick = int(saved["ticks"])
 
     def tick(self, people: Mapping[Hashable, Goal]) -> dict[Hashable, ActorState]:
         """`advance`, then the states of all actors: id -> state."""

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, replace
-from functools import partial
+from dataclasses import astuple, dataclass, replace
+from functools import lru_cache, partial
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from esplanade.actors.rows_to_come import rows_to_come
+from esplanade.actors.saved_detours import plain_around, read_around
 from esplanade.planning import Body, LayeredGrid, Potential
 from esplanade.planning.grid.clearances import kind_of
 from esplanade.planning.routes.shut_way import Around
@@ -24,10 +25,15 @@ GoalKey = tuple[float, float, float, Body]
 """x, y, height and kind of body, of `kind_for_ways`."""
 DetourKey = tuple[float, float, float, Body, Around]
 """The same, and what ways lead around."""
+DoorStates = tuple[bool, ...]
+"""Whether each door of a ground is open, in their order."""
+Origin = tuple[GoalKey | DetourKey, DoorStates]
+"""The goal and the ground by which the values of a row were derived."""
 _DETOUR_LENGTH = 5
 _IDLE_KEPT = 32
 _NO_BOUND = int(LIMITS["edge_cells"][1])
 """For bodies whose M forbids nothing, where that of others may."""
+_ROWS = ("idle", "spare", "stale", "outdated", "provisional")
 _SLACK_M = 0.02
 """A goal may lie closer to a wall than the radius by this."""
 
@@ -40,6 +46,8 @@ class RenewedPotential:
     changes: int
     """The number of changes of the ground when it was derived."""
     values: NDArray[np.float32]
+    doors: DoorStates = ()
+    """The doors that stood open then."""
 
 
 class PotentialPool:
@@ -59,6 +67,8 @@ class PotentialPool:
         )
         self._slots: dict[GoalKey | DetourKey, int] = {}
         self._keys: list[GoalKey | DetourKey | None] = []
+        self._origins: list[Origin | None] = []
+        """By rows; None for values by which no path leads anywhere."""
         self._users: list[int] = []
         self._idle: list[int] = []
         self._spare: list[int] = []
@@ -136,6 +146,7 @@ class PotentialPool:
     def _keep(self, key: GoalKey | DetourKey, values: NDArray[np.float32] | np.float32) -> int:
         slot = self._fresh_slot()
         self.arrays[slot] = values
+        self._origins[slot] = key, self._doors()
         self._outdated.pop(slot, None)
         self._provisional.discard(slot)
         self._slots[key] = slot
@@ -149,7 +160,9 @@ class PotentialPool:
             if each[:3] == key[:3] and len(each) < _DETOUR_LENGTH
         ]
         values = self.arrays[alike[0]].copy() if alike else np.float32(np.inf)
+        origin = self._origins[alike[0]] if alike else None
         slot = self._keep(key, values)
+        self._origins[slot] = origin
         self._outdated[slot] = None
         self._provisional.add(slot)
         return slot
@@ -186,6 +199,7 @@ class PotentialPool:
             key = self._keys[slot]
             if key is not None and self._users[slot]:
                 self.arrays[slot] = potential_of(self._grid, key)
+                self._origins[slot] = key, self._doors()
                 return
 
     def outdate(self) -> None:
@@ -220,9 +234,13 @@ class PotentialPool:
             key=lambda slot: (not self._users[slot], slot not in self._provisional),
         )
         key = self._keys[slot]
-        return (
-            None if key is None else partial(self._renewed, self._grid.fork(), key, self._changes)
-        )
+        if key is None:
+            return None
+        return partial(self._renewed, self._grid.fork(), key, self._changes, self._doors())
+
+    def derived_again(self, goal: GoalKey | DetourKey, changes: int) -> RenewedPotential:
+        """Derive on the ground as it is what was derived after so many changes of it."""
+        return self._renewed(self._grid.fork(), goal, changes, self._doors())
 
     def renew(self, renewed: RenewedPotential) -> None:
         """Take a potential that was derived anew; it is derived again if the ground has changed."""
@@ -230,19 +248,101 @@ class PotentialPool:
         if slot is None or slot not in self._outdated:
             return
         self.arrays[slot] = renewed.values
+        self._origins[slot] = renewed.goal, renewed.doors
         self._provisional.discard(slot)
         del self._outdated[slot]
         if renewed.changes != self._changes:
             self._outdated[slot] = None
 
     def _renewed(
-        self, grid: LayeredGrid, key: GoalKey | DetourKey, changes: int
+        self, grid: LayeredGrid, key: GoalKey | DetourKey, changes: int, doors: DoorStates
     ) -> RenewedPotential:
+        return RenewedPotential(key, changes, self._values(grid, key), doors)
+
+    def _values(self, grid: LayeredGrid, key: GoalKey | DetourKey) -> NDArray[np.float32]:
         try:
-            values = potential_of(grid, key)
+            return potential_of(grid, key)
         except ValueError:  # nobody can stand there any more
-            values = np.full(self.arrays.shape[1:], np.inf, dtype=np.float32)
-        return RenewedPotential(key, changes, values)
+            return np.full(self.arrays.shape[1:], np.inf, dtype=np.float32)
+
+    def _doors(self) -> DoorStates:
+        doors = self._grid.doors
+        return tuple(doors.is_open(name) for name in doors)
+
+    # --- the exact state -----------------------------------------------------------------
+
+    def save(self) -> dict[str, Any]:
+        """The rows as plain data. Their values are not in it, but how these were derived."""
+        return {
+            "derived_outside": self.derived_outside,
+            "changes": self._changes,
+            "keys": [None if key is None else plain_key(key) for key in self._keys],
+            "origins": [
+                None if each is None else [plain_key(each[0]), list(each[1])]
+                for each in self._origins
+            ],
+            "users": list(self._users),
+            "idle": list(self._idle),
+            "spare": list(self._spare),
+            "stale": list(self._stale),
+            "outdated": list(self._outdated),
+            "provisional": sorted(self._provisional),
+        }
+
+    def load(self, saved: Mapping[str, Any]) -> None:
+        """Have the rows that were saved, and no others; their values are derived anew.
+
+        Doors of the ground move meanwhile, and stand at the end as they did. Heavy: the time of
+        each row is that of a new goal, unless a row here has the same values already.
+
+        Raises
+        ------
+        ValueError, KeyError, TypeError
+            It is not what `save` gives. Nothing is to be done with this pool then.
+        """
+        keys = [None if each is None else key_of(each) for each in saved["keys"]]
+        origins = [
+            None if each is None else (key_of(each[0]), tuple(map(bool, each[1])))
+            for each in saved["origins"]
+        ]
+        lists = {name: list(map(int, saved[name])) for name in _ROWS}
+        if not len(keys) == len(origins) == len(saved["users"]) or not all(
+            0 <= row < len(keys) for rows in lists.values() for row in rows
+        ):
+            raise ValueError("rows of potentials are named that are not there")
+        self._fill(keys, origins)
+        self._users = list(map(int, saved["users"]))
+        self._slots = {key: row for row, key in enumerate(keys) if key is not None}
+        self._idle, self._spare, self._stale = (lists[name] for name in _ROWS[:3])
+        self._outdated = dict.fromkeys(lists["outdated"])
+        self._provisional = set(lists["provisional"])
+        self._changes = int(saved["changes"])
+        self.derived_outside = bool(saved["derived_outside"])
+
+    def _fill(self, keys: list[GoalKey | DetourKey | None], origins: list[Origin | None]) -> None:
+        """Write the values of rows, each on the ground on which it was derived."""
+        known = {
+            origin: self.arrays[row].copy()
+            for row, origin in enumerate(self._origins)
+            if origin is not None
+        }
+        now, names = self._doors(), tuple(self._grid.doors)
+        for doors in sorted(
+            {each[1] for each in origins if each is not None and each not in known}
+        ):
+            for name, is_open in zip(names, doors, strict=True):
+                if self._grid.doors.is_open(name) != is_open:
+                    self._grid.set_door(name, is_open)
+            for origin in origins:
+                if origin is not None and origin[1] == doors and origin not in known:
+                    known[origin] = self._values(self._grid, origin[0])
+        for name, is_open in zip(names, now, strict=True):
+            if self._grid.doors.is_open(name) != is_open:
+                self._grid.set_door(name, is_open)
+        self._keys, self._origins = keys, origins
+        self._reserve(len(keys))
+        for row, origin in enumerate(origins):
+            self.arrays[row] = np.float32(np.inf) if origin is None else known[origin]
 
     def reserve(self, rows: int) -> None:
         """Make room for so many rows more than are known, before a tick has to."""
@@ -276,6 +376,7 @@ class PotentialPool:
         if slot == len(self.arrays):
             self._reserve(max(4, 2 * slot))
         self._keys.append(None)
+        self._origins.append(None)
         self._users.append(0)
         return slot
 
@@ -287,6 +388,30 @@ def potential_of(grid: LayeredGrid, key: GoalKey | DetourKey) -> NDArray[np.floa
     return Potential(
         grid, (x, y), z_m, kind.radius_m, body=kind, shut=places, within_m=within_m
     ).values
+
+
+@lru_cache(maxsize=4096)
+def plain_key(key: GoalKey | DetourKey) -> tuple[Any, ...]:
+    """A key as plain data, of which `key_of` makes it again; kept, since goals stay."""
+    x, y, z_m, kind, *more = key
+    return (x, y, z_m, astuple(kind), *(plain_around(each) for each in more))
+
+
+def key_of(plain: Sequence[Any]) -> GoalKey | DetourKey:
+    """The key of which that was made.
+
+    Raises
+    ------
+    ValueError, TypeError
+        It is no key.
+    """
+    x, y, z_m, kind, *more = plain
+    radius_m, height_m, step_on_m, leg_length_m = map(float, kind[:4])
+    body = Body(radius_m, height_m, step_on_m, leg_length_m, int(kind[4]))
+    goal = float(x), float(y), float(z_m), body
+    if not all(map(math.isfinite, goal[:3])) or len(more) > 1:
+        raise ValueError(f"no goal is at ({x}, {y}, {z_m})")
+    return (*goal, read_around(*more[0])) if more else goal
 
 
 def kind_for_ways(grid: LayeredGrid, body: Body) -> Body:

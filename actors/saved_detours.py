@@ -25,7 +25,8 @@ class SavedDetour(NamedTuple):
 
     def plain(self) -> list[Any]:
         """The same as plain data."""
-        return [self.row, *_plain(self.wanted), *_plain(self.shut), self.derived_s]
+        ways = *plain_around(self.wanted), *plain_around(self.shut)
+        return [self.row, *ways, self.derived_s]
 
 
 def read_detours(saved: Sequence[Sequence[Any]], actors: int) -> list[SavedDetour]:
@@ -48,17 +49,25 @@ def read_detours(saved: Sequence[Sequence[Any]], actors: int) -> list[SavedDetou
         if not 0.0 <= float(derived_s) < math.inf:
             raise ValueError(f"the time since a way around people was derived is {derived_s}")
         if places:
-            ways = _around(shut, shut_within_m), _around(places, within_m)
+            ways = read_around(shut, shut_within_m), read_around(places, within_m)
             found.append(SavedDetour(int(row), *ways, float(derived_s)))
     return found
 
 
-def _plain(way: Around) -> list[Any]:
+def plain_around(way: Around) -> list[Any]:
+    """A way around places as plain data, the arguments of `read_around`."""
     within_m = None if math.isinf(way.within_m) else way.within_m
     return [[list(disc) for disc in way.places], within_m]
 
 
-def _around(saved: Sequence[Sequence[Any]], within_m: float | None) -> Around:
+def read_around(saved: Sequence[Sequence[Any]], within_m: float | None) -> Around:
+    """The way around places of which that plain data was made.
+
+    Raises
+    ------
+    ValueError, TypeError
+        It is no such data.
+    """
     places = tuple((float(x), float(y), float(z), float(r)) for x, y, z, r in saved)
     if not np.isfinite(np.array(places)).all():
         raise ValueError("a place that a way leads around is none")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from typing import Any, Final
 
 import numpy as np
@@ -81,6 +81,26 @@ class StandingPeople:
             raise ValueError("a place where somebody stands is none")
         self.ids = [row[0] for row in saved]
         self.anchors, self.stood_s = rows[:, :3].copy(), rows[:, 3].copy()
+        self._version = -1
+
+    def save_exactly(self) -> dict[str, Any]:
+        """Everybody, those included who do not stand, as plain data and copies of arrays."""
+        ids = list(self.ids)
+        return {"ids": ids, "anchors": self.anchors.copy(), "stood_s": self.stood_s.copy()}
+
+    def load_exactly(self, saved: Mapping[str, Any]) -> None:
+        """Remember everybody as when this was saved.
+
+        Raises
+        ------
+        ValueError, KeyError, TypeError
+            It is not what `save_exactly` gives.
+        """
+        self.ids, count = list(saved["ids"]), len(saved["ids"])
+        self.anchors = np.array(saved["anchors"], dtype=np.float64).reshape(count, 3)
+        self.stood_s = np.array(saved["stood_s"], dtype=np.float64).reshape(count)
+        if not (np.isfinite(self.anchors).all() and np.isfinite(self.stood_s).all()):
+            raise ValueError("a place where somebody stands is none")
         self._version = -1
 
     def _match(self, ids: list[Hashable], places: NDArray[np.float64]) -> None:

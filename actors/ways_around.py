@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from typing import Final, NamedTuple
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from esplanade.actors.potential_pool import GoalKey, PotentialPool
-from esplanade.actors.saved_detours import MOST_DETOURS
+from esplanade.actors.potential_pool import GoalKey, PotentialPool, key_of, plain_key
+from esplanade.actors.saved_detours import MOST_DETOURS, plain_around, read_around
 from esplanade.actors.standing_discs import still_there
 from esplanade.planning.routes.shut_way import Around
 
@@ -72,6 +72,39 @@ class WaysAround:
         """Have a way derived as it was, around `shut`; that around `wanted` follows in its turn."""
         row = self._potentials.take((*key, shut))
         self._known[key] = WayAround(shut, row, wanted, None, derived_s)
+
+    def save(self) -> list[list[Any]]:
+        """All ways as plain data, with the rows of their potentials."""
+        return [
+            [
+                plain_key(key),
+                plain_around(way.shut),
+                way.row,
+                plain_around(way.wanted),
+                None if way.coming is None else [plain_around(way.coming[0]), way.coming[1]],
+                way.derived_s,
+            ]
+            for key, way in self._known.items()
+        ]
+
+    def load(self, saved: Sequence[Sequence[Any]]) -> None:
+        """Have the ways that were saved, and no others; their potentials are there already.
+
+        Raises
+        ------
+        ValueError, TypeError
+            It is not what `save` gives.
+        """
+        self._known = {}
+        for key, shut, row, wanted, coming, derived_s in saved:
+            x, y, z_m, kind = key_of(key)[:4]
+            self._known[x, y, z_m, kind] = WayAround(
+                read_around(*shut),
+                int(row),
+                read_around(*wanted),
+                None if coming is None else (read_around(*coming[0]), int(coming[1])),
+                float(derived_s),
+            )
 
     def want(self, key: GoalKey, wanted: Around) -> bool:
         """Have the way of a goal lead around places soon; False if it has none and has to wait."""

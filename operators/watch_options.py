@@ -11,6 +11,7 @@ CHANNELS = ("events", "changes", "contacts", "series")
 EVENT_KINDS = (
     *("join", "leave", "contact", "stop", "no_path", "door", "plan_failure", "late_tick"),
     *("chat", "command", "mark", "report", "pace", "schedule", "trajectories"),
+    "recording",
 )
 _KINDS = f"only events of these kinds: {', '.join(EVENT_KINDS)}"
 

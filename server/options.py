@@ -146,6 +146,19 @@ _DATA: Final = {
         None,
         "per second",
     ),
+    "record": Setting(
+        "folder to record each zone into, one .mcap file each, from which `esplanade replay` runs "
+        "it again bit for bit; a file that is there already is left as it is",
+        Folder(),
+    ),
+    "record_names": Setting(
+        "names of people stand in recordings; without it, Person 7 and the like do",
+        Flag(),
+        default=False,
+    ),
+    "record_chat": Setting(
+        "what people say stands in recordings; without it, it is left out", Flag(), default=False
+    ),
 }
 _NETWORK: Final = {
     "host": Setting(
@@ -340,6 +353,9 @@ def check(given: Mapping[str, Any]) -> None:
         raise ValueError(f"{name}: it says how a crowd is read, but none is given")
     check_reading(given)
     _check_trajectories(given)
+    for name in ("record_names", "record_chat"):
+        if given.get(name) and not given.get("record"):
+            raise ValueError(f"{name}: it belongs to --record, but none is given")
     if bool(given.get("tls_cert")) != bool(given.get("tls_key")):
         raise ValueError("tls_cert and tls_key: give both of them, or none")
     _check_ways_in(given)
@@ -443,6 +459,7 @@ examples:
   esplanade serve --scene scenes/plaza.json --actors 30 --port 9000
   esplanade serve --world scenes/town.json         several zones, and portals between them
   esplanade serve --data world                     the world goes on from there after a restart
+  esplanade serve --record kept              then `esplanade replay kept/gallery.mcap`
   esplanade serve --crowd zara1.csv                then `esplanade bots --replay zara1.csv`
 
 Every option can also be given as an environment variable: --tick-rate is ESPLANADE_TICK_RATE.

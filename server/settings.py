@@ -59,6 +59,9 @@ class ServerSettings(BaseSettings):
     keep_chat_days: int = _field("keep_chat_days")
     trajectories: Path | None = _field("trajectories")
     trajectories_hz: float | None = _field("trajectories_hz")
+    record: Path | None = _field("record")
+    record_names: bool = _field("record_names")
+    record_chat: bool = _field("record_chat")
 
     host: str = _field("host")
     port: int = _field("port")

@@ -7,6 +7,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from operator import itemgetter
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -224,6 +225,49 @@ class TrackHistory:
         self._tracks.counts[row] = 0
         self._tracks.growths2[row] = self.model.sigma_growth_mps**2
         return row
+
+    def save(self) -> dict[str, Any]:
+        """The past of everyone who is present, as plain data and copies of arrays.
+
+        The rows of the arrays are in the order of `ids`.
+        """
+        tracks = {name: column[self._order] for name, column in self._tracks._asdict().items()}
+        return {
+            "ids": list(self._ids),
+            "ticks": self._ticks,
+            "places": self._places.copy(),
+            **tracks,
+        }
+
+    def load(self, saved: Mapping[str, Any]) -> None:
+        """Know the past that was saved, and no other.
+
+        Raises
+        ------
+        ValueError, KeyError, TypeError
+            Something is missing, or has another shape; nothing is changed then.
+        """
+        ids = list(saved["ids"])
+        columns = {}
+        for name, column in self._tracks._asdict().items():
+            columns[name] = np.array(saved[name], dtype=column.dtype)
+            if columns[name].shape != (len(ids), *column.shape[1:]):
+                raise ValueError(f"the past of {len(ids)} people cannot have {name} of that shape")
+        places = np.array(saved["places"], dtype=np.float64).reshape(len(ids), 3)
+        ticks, kept = int(saved["ticks"]), [*columns.values(), places]
+        counts = columns["counts"]
+        if not all(np.isfinite(each).all() for each in kept) or (counts < 0).any() or ticks < -1:
+            raise ValueError("the past of people holds what cannot be")
+        self._tracks = Tracks(**columns)
+        self._held = make_handle(self._tracks)
+        self._rows = {who: row for row, who in enumerate(ids)}
+        self._listed = sorted(((_name(who), who) for who in ids), key=_NAME)
+        self._ids = [who for _, who in self._listed]
+        self._order = np.array([self._rows[who] for who in self._ids], dtype=np.int64)
+        self._places, self._free = places[self._order], []
+        self._velocities, self._newest = np.zeros((len(ids), 2)), np.zeros((len(ids), 2))
+        self._ticks, self._array_ids = ticks, None
+        self.version += 1
 
     def velocities(self) -> NDArray[np.float64]:
         """Predicted velocities, eq. (1), float64 (P, 2), m/s.

@@ -20,8 +20,13 @@ _LEVEL: Final = 1
 
 def pack(parts: Mapping[str, Any]) -> bytes:
     """The bytes of parts: numbers, text, bytes, lists, mappings and arrays."""
-    packed: bytes = msgpack.packb(parts, default=_packed)
-    return zlib.compress(packed, _LEVEL)
+    return zlib.compress(packed(parts), _LEVEL)
+
+
+def packed(parts: Any) -> bytes:
+    """The same, not compressed; equal parts have equal bytes."""
+    made: bytes = msgpack.packb(parts, default=_packed)
+    return made
 
 
 def unpack(payload: bytes) -> dict[str, Any]:
@@ -34,15 +39,29 @@ def unpack(payload: bytes) -> dict[str, Any]:
     """
     try:
         stream = zlib.decompressobj()
-        packed = stream.decompress(payload, MOST_BYTES)
-        is_whole = stream.eof and not stream.unused_data
-        parts = msgpack.unpackb(
-            packed, ext_hook=_unpacked, strict_map_key=False, max_ext_len=MOST_BYTES
-        )
-    except (zlib.error, msgpack.UnpackException, ValueError, TypeError, RecursionError) as error:
+        found = stream.decompress(payload, MOST_BYTES)
+    except zlib.error as error:
         raise CheckpointError(f"it cannot be unpacked: {error}") from error
-    if not is_whole:
+    parts = parts_of(found)
+    if not stream.eof or stream.unused_data:
         raise CheckpointError("it is cut off, or too large")
+    return parts
+
+
+def parts_of(found: bytes) -> dict[str, Any]:
+    """The parts that `packed` was given; tuples have become lists.
+
+    Raises
+    ------
+    CheckpointError
+        These are no such bytes.
+    """
+    try:
+        parts = msgpack.unpackb(
+            found, ext_hook=_unpacked, strict_map_key=False, max_ext_len=MOST_BYTES
+        )
+    except (msgpack.UnpackException, ValueError, TypeError, RecursionError) as error:
+        raise CheckpointError(f"it cannot be unpacked: {error}") from error
     if not isinstance(parts, dict) or not all(isinstance(name, str) for name in parts):
         raise CheckpointError("it does not have parts with names")
     return parts
@@ -70,8 +89,14 @@ def _unpacked(code: int, data: bytes) -> Any:
     reader = msgpack.Unpacker(max_buffer_size=len(data) or 1)
     reader.feed(data)
     kind, shape = reader.unpack()
-    descr = kind if isinstance(kind, str) else [tuple(each) for each in kind]
-    dtype = np.dtype(descr)
+    dtype = np.dtype(_descr(kind))
     if dtype.hasobject or dtype.itemsize == 0:
         raise ValueError(f"arrays of {dtype} are not known")
     return np.frombuffer(data, dtype, offset=reader.tell()).reshape(shape).copy()
+
+
+def _descr(kind: Any) -> Any:
+    """What numpy makes a type of, with tuples for the lists that they have become."""
+    if isinstance(kind, str):
+        return kind
+    return [(name, _descr(inner), *map(tuple, shape)) for name, inner, *shape in kind]

@@ -11,6 +11,7 @@ ACTOR: Final = "actor:"
 EVENT_KINDS: Final = (
     *("join", "leave", "contact", "stop", "no_path", "door", "plan_failure", "late_tick"),
     *("chat", "command", "mark", "report", "pace", "schedule", "trajectories"),
+    "recording",
 )
 BEATS_A_SECOND: Final = 10
 """So often a second are subscribers told what is new."""

@@ -3,7 +3,7 @@
 import asyncio
 from collections.abc import Sequence
 from time import perf_counter
-from typing import Self
+from typing import TYPE_CHECKING, Self
 
 import structlog
 
@@ -23,6 +23,9 @@ from esplanade.server.world.actor_travel import ActorTravel
 from esplanade.server.world.audience import Audience
 from esplanade.server.world.inputs import Input, Still
 from esplanade.server.world.zone import Zone
+
+if TYPE_CHECKING:
+    from esplanade.server.recording.zone_recording import ZoneRecording
 
 log = structlog.get_logger(__name__)
 
@@ -57,6 +60,8 @@ class Ticker:
         """Where the ticks go that operators see."""
         self.trajectories: WorldTrajectories | None = None
         """Where the ticks go that are written to a file."""
+        self.recording: ZoneRecording | None = None
+        """Where the ticks go from which a replay runs them again."""
         self._stopping = asyncio.Event()
         self._persistence: Persistence | None = None
         self._travel: ActorTravel | None = None
@@ -177,6 +182,9 @@ class Ticker:
         if self.trajectories is not None:
             for frame in frames:
                 self.trajectories.take(frame, inputs)
+        if self.recording is not None:
+            for frame in frames:
+                self.recording.take(frame, inputs)
         if self._persistence is not None:
             self._persistence.between_ticks(loop.time())
         if self._long_lived is not None:

@@ -9,6 +9,7 @@ from pathlib import Path
 import structlog
 
 from esplanade.recordings.writing import WritingError
+from esplanade.server.file_thread import Ended
 from esplanade.server.live.bulletin import Bulletin
 from esplanade.server.loading import DEFAULT_SCENE, LoadedScene, LoadingError
 from esplanade.server.metrics import Metrics
@@ -16,7 +17,7 @@ from esplanade.server.options import SETTINGS
 from esplanade.server.settings import ServerSettings
 from esplanade.server.trajectories.provenance import Origin, files_of
 from esplanade.server.trajectories.recorder import Recorder
-from esplanade.server.trajectories.writer import Ended, TrajectoryWriter, free_path
+from esplanade.server.trajectories.writer import TrajectoryWriter, free_path
 from esplanade.server.world.frame import Frame
 from esplanade.server.world.inputs import Input
 from esplanade.server.world.zone import Zone

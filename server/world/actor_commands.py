@@ -63,9 +63,18 @@ class ActorCommands:
         """Number of commands that wait."""
         return len(self._waiting)
 
+    @property
+    def those_waiting(self) -> list[ActorCommand]:
+        """The commands that wait, the longest first."""
+        return list(self._waiting.values())
+
     def restore(self, specs: Iterable[ActorSpec]) -> None:
         """Know these actors, and no others: those of a zone that goes on after a restart."""
         self._effects.specs = {spec.id: spec for spec in specs}
+
+    def wait(self, commands: Iterable[ActorCommand]) -> None:
+        """Let these commands wait, the longest first, and no others."""
+        self._waiting = {each.command: each for each in commands}
 
     def begin(self) -> None:
         """A new tick: nothing has come of it yet."""

@@ -2,6 +2,7 @@
 
 from collections.abc import Hashable, Iterable, Mapping
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -100,6 +101,37 @@ class ActorAvatars:
         for row, actor_id in enumerate(self._population.table):
             if actor_id in avatars:
                 self._add(actor_id, row, avatars[str(actor_id)])
+
+    def save(self) -> dict[str, Any]:
+        """The avatars of all actors, the names of all, and what is pointed at, as plain data."""
+        return {
+            "avatars": dict(self._avatars),
+            "names": dict(self._names),
+            "pointing": {avatar: list(place) for avatar, place in self.pointing.items()},
+        }
+
+    def load(self, saved: Mapping[str, Any]) -> None:
+        """Know the avatars that were saved, which are in the state already, and no others.
+
+        Raises
+        ------
+        ValueError, KeyError, TypeError
+            It is not what `save` of these actors gives.
+        """
+        table = self._population.table
+        self._names = dict(saved["names"])
+        self._avatars = {actor: int(avatar) for actor, avatar in saved["avatars"].items()}
+        self._actor_ids = {avatar: actor for actor, avatar in self._avatars.items()}
+        self.pointing = {
+            int(avatar): (float(x), float(y), float(z))
+            for avatar, (x, y, z) in saved["pointing"].items()
+        }
+        here = [actor for actor in table if actor in self._avatars]
+        if len(here) < len(self._avatars) or not set(table.ids) <= self._names.keys():
+            raise ValueError("there is an avatar of an actor who is not there")
+        self._slots = np.array([self._state.slot(self._avatars[a]) for a in here], dtype=np.int64)
+        # Actors without an avatar come into the world with the next tick that moves any.
+        self._version = table.version if len(here) == len(table) else -1
 
     def name(self, actor_id: Hashable, name: str) -> None:
         """Set the name that others see of an actor which comes into the world next."""

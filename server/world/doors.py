@@ -1,5 +1,7 @@
 """Doors of the zone: they close only when nobody is in the way."""
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from esplanade.planning import LayeredGrid
@@ -38,6 +40,12 @@ class Doors:
     def wanted(self) -> dict[str, bool]:
         """The doors that are wanted otherwise than they are, the longest first."""
         return dict(self._wanted)
+
+    def want_only(self, wanted: Mapping[str, bool]) -> None:
+        """Want these doors otherwise than they are, the longest first, and no others."""
+        self._wanted = {}
+        for name, is_open in wanted.items():
+            self.want(name, bool(is_open))
 
     def due(self) -> list[tuple[str, bool]]:
         """The doors that are wanted elsewhere and can be moved now, the longest wanted first."""

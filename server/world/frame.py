@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
@@ -145,6 +146,30 @@ class Recorder:
         changed = live[self._away[live] != state.away[live]]
         self._away[changed] = state.away[changed]
         return dict(zip(state.ids[changed].tolist(), state.away[changed].tolist(), strict=True))
+
+    def save(self) -> dict[str, Any]:
+        """All that was told last of everyone, as copies of arrays in the order of live slots."""
+        live = self._state.live()
+        return {
+            "records": self._records[live],
+            "arrivals": self._arrivals[live],
+            "bodies": self._bodies[live],
+            "away": self._away[live],
+        }
+
+    def load(self, saved: Mapping[str, Any]) -> None:
+        """Take as told last what was saved.
+
+        Raises
+        ------
+        ValueError, KeyError, TypeError
+            It is not what `save` of these avatars gives.
+        """
+        live = self._state.live()
+        self._arrivals[:] = 0
+        self._records[live] = np.asarray(saved["records"], dtype=RECORD)
+        self._arrivals[live], self._bodies[live] = saved["arrivals"], saved["bodies"]
+        self._away[live] = saved["away"]
 
     def _bodies_of(self, slots: Slots) -> Floats:
         """Radius, leg and stature, float64 (N, 3), metres."""

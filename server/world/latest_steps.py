@@ -1,5 +1,8 @@
 """The newest step of everyone, as it goes over the wire."""
 
+from collections.abc import Mapping
+from typing import Any
+
 import numpy as np
 
 from esplanade.protocol.steps import StepRecords, new_step_records
@@ -20,6 +23,22 @@ class LatestSteps:
         """Write the steps, STEP (N,), that the avatars in these slots, (N,), begin."""
         self.records[slots] = records
         self.begun[slots] = tick
+
+    def save(self, slots: Slots) -> dict[str, Any]:
+        """The newest steps of these slots (N,), as copies of arrays."""
+        return {"records": self.records[slots], "begun": self.begun[slots]}
+
+    def load(self, slots: Slots, saved: Mapping[str, Any]) -> None:
+        """Know the steps of these slots (N,) that were saved, and no others.
+
+        Raises
+        ------
+        ValueError, KeyError, TypeError
+            It is not what `save` gives.
+        """
+        self.begun[:] = 0
+        self.records[slots] = np.asarray(saved["records"], dtype=self.records.dtype)
+        self.begun[slots] = saved["begun"]
 
     def begun_in(self, tick: int, slots: Slots) -> StepRecords:
         """The steps that avatars in these slots began in a tick, STEP (N,)."""

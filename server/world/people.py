@@ -1,8 +1,9 @@
 """Moves people: the server decides, within the limits of speed and walls."""
 
 from collections import deque
+from collections.abc import Mapping
 from itertools import islice
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -78,6 +79,46 @@ class People:
             self._blocked[slot] = 0
             self._targets[slot] = wish.route[0][:2]
             self._route_ahead.set(slot, wish.route)
+
+    def save(self) -> dict[str, Any]:
+        """The intentions of everyone, as plain data and copies of arrays."""
+        people = self._state.of_kind(PERSON)
+        on_route = [slot for slot in people.tolist() if slot in self._routes]
+        return {
+            "velocities": self._velocities[people],
+            "following": self._following[people],
+            "blocked": self._blocked[people],
+            "targets": self._targets[people],
+            "routes": [[slot, list(self._routes[slot])] for slot in on_route],
+            "corners": self._route_ahead.save(on_route),
+        }
+
+    def load(self, saved: Mapping[str, Any]) -> None:
+        """Let everyone who is in the state mean to do what was saved.
+
+        Raises
+        ------
+        ValueError, KeyError, TypeError
+            It is not what `save` of these people gives.
+        """
+        people = self._state.of_kind(PERSON)
+        for name, column in (
+            ("velocities", self._velocities),
+            ("following", self._following),
+            ("blocked", self._blocked),
+            ("targets", self._targets),
+        ):
+            rows = np.asarray(saved[name], dtype=column.dtype)
+            if rows.shape != (len(people), *column.shape[1:]) or not np.isfinite(rows).all():
+                raise ValueError(f"{len(people)} people cannot have such {name}")
+            column[people] = rows
+        self._routes = {
+            int(slot): deque((float(x), float(y), float(z)) for x, y, z in route)
+            for slot, route in saved["routes"]
+        }
+        if not self._routes.keys() <= set(people.tolist()):
+            raise ValueError("somebody follows a route who is not there")
+        self._route_ahead.load(list(self._routes), saved["corners"])
 
     def observed(self) -> ObservedPeople:
         """People as actors see them in this tick."""

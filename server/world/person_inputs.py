@@ -1,6 +1,6 @@
 """The effects of people's inputs on a zone, and what its frame tells of them."""
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from itertools import compress
 
 from esplanade.planning import LayeredGrid
@@ -59,6 +59,14 @@ class PersonInputs:
     def watched(self) -> Collection[int]:
         """The avatars of the actors whose plans somebody wants to see."""
         return self._watched.values()
+
+    def save(self) -> dict[int, int]:
+        """The actors' avatars that people watch, by the ids of these people."""
+        return dict(self._watched)
+
+    def load(self, watched: Mapping[int, int]) -> None:
+        """Let people watch as when this was saved."""
+        self._watched = {int(who): int(actor) for who, actor in watched.items()}
 
     def join(self, join: Join) -> None:
         """Give a newcomer an avatar, or somebody who comes from another zone the one of there.

@@ -1,7 +1,7 @@
 """Where people who follow routes will be: places along the next corners, not straight on."""
 
 from collections.abc import Sequence
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -29,6 +29,23 @@ class RouteAhead:
         row[:] = corners[-1][:2]
         nearest = corners[:CORNERS]
         row[: len(nearest)] = [corner[:2] for corner in nearest]
+
+    def save(self, slots: Sequence[int]) -> np.ndarray[Any, Any]:
+        """The next corners of these slots, (N, CORNERS, 2); a copy."""
+        return self._corners[list(slots)]
+
+    def load(self, slots: Sequence[int], corners: Any) -> None:
+        """Take the corners that were saved, in the order of slots.
+
+        Raises
+        ------
+        ValueError
+            They are of another shape, or not finite.
+        """
+        rows = np.asarray(corners, dtype=np.float64)
+        if rows.shape != (len(slots), CORNERS, 2) or not np.isfinite(rows).all():
+            raise ValueError(f"{len(slots)} routes cannot have such corners")
+        self._corners[list(slots)] = rows
 
     def places(self, slots: Slots, here: Floats, speeds_mps: Floats) -> Floats:
         """Places (N, AHEAD, 2) of people at `here` (N, 2), from now on, AHEAD_S apart, metres."""

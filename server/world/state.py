@@ -1,7 +1,7 @@
 """The avatars of a zone: one dense table, a slot each."""
 
-from collections.abc import Iterable
-from typing import Final
+from collections.abc import Iterable, Mapping
+from typing import Any, Final
 
 import numpy as np
 import numpy.typing as npt
@@ -17,6 +17,27 @@ ACTOR: Final = 1
 KINDS: Final = (Kind.PERSON, Kind.ACTOR)
 ANY_ID: Final = (1, 2**32)
 """Ids have 32 bits on the wire."""
+
+
+_COLUMNS: Final = (
+    "ids",
+    "arrivals",
+    "kinds",
+    "layers",
+    "positions",
+    "heights",
+    "before",
+    "ahead",
+    "headings",
+    "speeds",
+    "reasons",
+    "radii",
+    "scales",
+    "legs_m",
+    "statures_m",
+    "away",
+)
+"""The columns of which an avatar has a row each, but for its name."""
 
 
 class WorldFullError(RuntimeError):
@@ -154,6 +175,52 @@ class State:
             self._next_id, self._ids_end = self._more_ids.pop(0)
         self._next_id += 1
         return self._next_id - 1
+
+    def save(self) -> dict[str, Any]:
+        """Every avatar but its name, and the slots and ids that are left: plain data, and copies.
+
+        Rows of the arrays are in the order of `live`.
+        """
+        live = self.live()
+        return {
+            "slots": live,
+            **{name: getattr(self, name)[live] for name in _COLUMNS},
+            "free": np.array(self._free, dtype=np.int32),
+            "arrived": self._arrived,
+            "id_blocks": [[self._next_id, self._ids_end], *map(list, self._more_ids)],
+        }
+
+    def load(self, saved: Mapping[str, Any], names: Mapping[int, str]) -> None:
+        """Hold the avatars that were saved, and no others, with names by their ids.
+
+        Raises
+        ------
+        ValueError, KeyError, TypeError
+            It is not what `save` of a state of this capacity gives.
+        """
+        slots = np.asarray(saved["slots"], dtype=np.int64)
+        free = np.asarray(saved["free"], dtype=np.int64).tolist()
+        if sorted([*slots.tolist(), *free]) != list(range(self.capacity)):
+            raise ValueError(f"these are not the {self.capacity} slots of a state")
+        self.alive[:] = False
+        self.alive[slots] = True
+        for name in _COLUMNS:
+            column, rows = getattr(self, name), np.asarray(saved[name])
+            if rows.shape != (len(slots), *column.shape[1:]) or rows.dtype != column.dtype:
+                raise ValueError(f"{name} of {len(slots)} avatars cannot be of that shape and type")
+            if not np.isfinite(rows).all():
+                raise ValueError(f"{name} of an avatar is not finite")
+            column[slots] = rows
+        ids = self.ids[slots].tolist()
+        if len(set(ids)) < len(ids):
+            raise ValueError("two avatars have one id")
+        self.names = [""] * self.capacity
+        for slot, avatar in zip(slots.tolist(), ids, strict=True):
+            self.names[slot] = names.get(avatar, "")
+        self._slots = dict(zip(ids, slots.tolist(), strict=True))
+        self._free, self._arrived = free, int(saved["arrived"])
+        blocks = [(int(first), int(end)) for first, end in saved["id_blocks"]]
+        (self._next_id, self._ids_end), *self._more_ids = blocks
 
     def remove(self, avatar_id: int) -> int:
         """Take an avatar out; returns the slot that is free now."""

@@ -1,6 +1,8 @@
 """Everyone's feet: they follow the bodies in the world with real steps."""
 
+from collections.abc import Mapping
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import structlog
@@ -54,6 +56,32 @@ class Feet:
     def stand_newcomers(self, tick: int) -> None:
         """The same in a tick in which nobody moves: newcomers stand, and no step begins."""
         self._update(tick, still=True)
+
+    def save(self) -> dict[str, Any]:
+        """Everyone's feet but their steps, which follow from the records that were sent of them.
+
+        They are copies of arrays in the order of the live slots.
+        """
+        live = self._state.live()
+        stood = {"arrivals": self._arrivals[live], "scales": self._scales[live]}
+        feet = self._walkers.save(live)
+        own = {name: column for name, column in feet.items() if name not in Steps._fields}
+        return {**stood, "walkers": own, "failed": self._failed}
+
+    def load(self, saved: Mapping[str, Any]) -> None:
+        """Give everyone who is in the state the feet that were saved; their steps are known.
+
+        Raises
+        ------
+        ValueError, KeyError, TypeError
+            It is not what `save` of these avatars gives.
+        """
+        live = self._state.live()
+        self._arrivals[:], self._scales[:] = 0, 1.0
+        self._arrivals[live], self._scales[live] = saved["arrivals"], saved["scales"]
+        steps = from_records(self._latest.records[live])
+        self._walkers.load(live, {**saved["walkers"], **steps._asdict()})
+        self._failed = int(saved["failed"])
 
     def _update(self, tick: int, *, still: bool) -> None:
         self._tick = tick

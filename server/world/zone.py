@@ -16,7 +16,7 @@ from esplanade.actors.blockers import Blocker
 from esplanade.actors.locomotion.footsteps.ground import Ground
 from esplanade.actors.outcomes import Outcome as TripOutcome
 from esplanade.actors.people import NOBODY
-from esplanade.actors.potential_pool import RenewedPotential
+from esplanade.actors.potential_pool import DetourKey, GoalKey, RenewedPotential
 from esplanade.actors.traces import Decided, Trace
 from esplanade.actors.tracing import NotKeptError
 from esplanade.planning import AgentTable, LayeredGrid, Prediction, Scene
@@ -26,6 +26,7 @@ from esplanade.server.world.actors import ActorAvatars
 from esplanade.server.world.command_checks import fault_in
 from esplanade.server.world.contacts import Contacts
 from esplanade.server.world.doors import Doors
+from esplanade.server.world.exact_state import ExactState, Parts
 from esplanade.server.world.frame import Events, Frame, Recorder
 from esplanade.server.world.greetings import Greetings
 from esplanade.server.world.inputs import (
@@ -135,6 +136,23 @@ class Zone:
             self.contacts,
             rules.person_radius_m,
             grid,
+        )
+        self._exact = ExactState(
+            Parts(
+                self.state,
+                grid,
+                self._people,
+                self._persons,
+                population,
+                self._actors,
+                self._commands,
+                self.doors,
+                self._spawning,
+                self.contacts,
+                self.feet,
+                self.steps,
+                self._recorder,
+            )
         )
 
     # --- one tick -----------------------------------------------------------------------------
@@ -250,6 +268,28 @@ class Zone:
         self.tick, self.people_seen = int(saved["tick"]), int(saved["people_seen"])
         self.actor_names = tuple(spec.name for spec in self.actors.values())
 
+    def save_exactly(self) -> dict[str, Any]:
+        """Everything that later ticks depend on, bit for bit; call it between two ticks."""
+        return {
+            "zone": [self.tick, self.people_seen, self.failures, self.decided_tick],
+            **self._exact.save(),
+        }
+
+    def load_exactly(self, saved: Mapping[str, Any]) -> None:
+        """Go on bit for bit from what a zone of the same scene, seed and size has saved.
+
+        Heavy: potentials are derived anew. Call it between two ticks.
+
+        Raises
+        ------
+        ValueError, KeyError, TypeError
+            Something is missing, or cannot be. Nothing is to be done with this zone then.
+        """
+        self._exact.load(saved)
+        self.tick, self.people_seen, self.failures, self.decided_tick = map(int, saved["zone"])
+        self.actor_names = tuple(spec.name for spec in self.actors.values())
+        self._begin_frame()
+
     def skip_to(self, tick: int) -> None:
         """Let the next tick have the number after that one, at least; time of actors stands."""
         self.tick = max(self.tick, tick)
@@ -309,6 +349,10 @@ class Zone:
         Ask between two ticks; potentials are out of date where `doors.derived_outside`.
         """
         return self._population.outdated_potential()
+
+    def derived_again(self, goal: GoalKey | DetourKey, changes: int) -> RenewedPotential:
+        """The potential of a goal on the ground as it is, for a replay; heavy."""
+        return self._population.navigator.potentials.derived_again(goal, changes)
 
     def actor_work(self) -> Callable[[], ActorsDerived] | None:
         """Derives what the next command on actors waits for, if any; heavy, safe in any thread.

@@ -19,6 +19,9 @@ class Command(NamedTuple):
 COMMANDS: Final = {
     "serve": Command("esplanade.options:serve", "run a world for people and actors"),
     "run": Command("esplanade.options:run", "run a world without a server, into a file"),
+    "replay": Command(
+        "esplanade.server.replay.options:parser", "run a recorded world again, bit for bit"
+    ),
     "bots": Command(
         "esplanade.bots.options:parser", "send people made of code: load, or a recorded crowd"
     ),
@@ -99,6 +102,7 @@ def _help() -> str:
         "  esplanade serve --data world             keeps operators and the audit",
         "  esplanade op user add olga --role tuner --data world",
         "  esplanade run my.json --actors 10 --seconds 60 --out my.csv",
+        "  esplanade replay kept/gallery.mcap --verify",
         "  esplanade bots --count 200 --duration 60",
         "  esplanade evaluate zara1.csv --policy esplanade straight",
         "  esplanade scene check my.json",

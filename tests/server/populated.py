@@ -55,7 +55,9 @@ class Populated:
         *,
         outside: bool = False,
         scene: Scene = HALL,
+        room_for: int = 0,
     ) -> None:
+        """With `room_for` there is room for as many actors as in a world that began with those."""
         self.grid = grid = LayeredGrid.from_scene(scene)
         roster = Roster(actors=tuple(specs))
         self.population = populate_from(roster, grid, scene, TICK_S, 3)
@@ -63,7 +65,7 @@ class Populated:
             scene,
             grid,
             self.population,
-            names_of(roster),
+            {**names_of(roster), **dict.fromkeys(range(room_for), "")},
             rules(),
             tick_s=TICK_S,
             max_people=16,

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import cache
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -101,6 +101,34 @@ class Walkers:
             raise ValueError("a key of a step is not a finite number")
         if len(begun):
             self.steps.put(begun, self._publish(steps, begun))
+
+    def save(self, slots: Ints) -> dict[str, Any]:
+        """The feet of the walkers in slots (N,), as copies of arrays of N rows, by their names."""
+        return {name: column[slots] for name, column in self._columns().items()}
+
+    def load(self, slots: Ints, saved: Mapping[str, Any]) -> None:
+        """Give the walkers in slots (N,) the feet that were saved.
+
+        Raises
+        ------
+        ValueError, KeyError, TypeError
+            Something is missing, or has another shape, or is not finite.
+        """
+        for name, column in self._columns().items():
+            rows = np.asarray(saved[name], dtype=column.dtype)
+            if rows.shape != (len(slots), *column.shape[1:]) or not np.isfinite(rows).all():
+                raise ValueError(f"feet of {len(slots)} walkers cannot have such {name}")
+            column[slots] = rows
+
+    def _columns(self) -> dict[str, np.ndarray[Any, Any]]:
+        """All that belongs to one walker each, by names."""
+        arrays, goals = self._arrays, self._arrays.goals._asdict()
+        return {
+            **self.steps._asdict(),
+            "lifted": arrays.lifted,
+            "elapsed": arrays.elapsed,
+            **{f"goal_{name}": column for name, column in goals.items()},
+        }
 
     def _stand(self, tick: int, slots: Ints, course: Course) -> None:
         """Let bodies stand where their courses begin, on two new footprints."""

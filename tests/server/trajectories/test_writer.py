@@ -13,9 +13,10 @@ from esplanade.recordings import read_crowd
 from esplanade.recordings.jupedsim_tables import box
 from esplanade.recordings.samples import SAMPLE, Head, Note, Samples
 from esplanade.recordings.writing import WritingError
+from esplanade.server.file_thread import Ended
 from esplanade.server.trajectories import writer as module
 from esplanade.server.trajectories.blocks import Block
-from esplanade.server.trajectories.writer import MOST_BLOCKS, Ended, TrajectoryWriter, free_path
+from esplanade.server.trajectories.writer import MOST_BLOCKS, TrajectoryWriter, free_path
 from tests.patience import PATIENCE_S
 
 BOUNDS = (0.0, 0.0, 10.0, 10.0)
@@ -148,7 +149,7 @@ def test_a_file_that_cannot_be_written_is_refused_at_the_start(tmp_path: Path) -
 def test_a_fault_of_what_makes_blocks_ends_the_file_in_good_order(tmp_path: Path) -> None:
     heard, path = Heard(), tmp_path / "a.csv"
     writer = TrajectoryWriter(path, HEAD, heard)
-    writer.put(cast(Block, SimpleNamespace(size=1)))
+    writer.put(cast(Block, SimpleNamespace(size=1, tick=1)))
     assert heard.wait().code == "failed"
     writer.close()
     assert path.read_text().startswith("# written by: tests\n")

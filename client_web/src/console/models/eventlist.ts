@@ -15,7 +15,7 @@ export interface WorldEvent {
 
 export const KINDS = [
   ...["join", "leave", "contact", "stop", "no_path", "door", "plan_failure", "late_tick", "chat"],
-  ...["command", "mark", "report", "pace", "schedule", "trajectories"],
+  ...["command", "mark", "report", "pace", "schedule", "trajectories", "recording"],
 ] as const;
 const MOST = 1000;
 

@@ -1,0 +1,95 @@
+"""A zone that is recorded: its ticks go to a thread that writes, and none of them waits."""
+
+import time
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+from typing import Final
+
+import structlog
+
+from esplanade.server.file_thread import Ended, FileThread
+from esplanade.server.recording.file import RecordingFile
+from esplanade.server.recording.head import Head
+from esplanade.server.recording.seconds import Second, Tick
+from esplanade.server.world.frame import Frame
+from esplanade.server.world.inputs import ActorsStood, Input
+from esplanade.server.world.zone import Zone
+
+MOST_SECONDS: Final = 10
+"""Seconds of a zone that may wait for the disk."""
+_NO_BOUND: Final = 2**62
+
+log = structlog.get_logger(__name__)
+
+
+class ZoneRecording:
+    """Takes each tick of a zone, and leaves a second of them at a time to the thread that writes.
+
+    The file begins with the exact state after the first tick that it takes.
+    """
+
+    def __init__(self, zone: Zone, head: Head, path: Path, ended: Callable[[Ended], None]) -> None:
+        """Make the file.
+
+        Raises
+        ------
+        WritingError
+            It cannot be written.
+        """
+        self._zone = zone
+        self._file = RecordingFile(path, head)
+        self._ticks_a_second = max(1, round(1.0 / zone.tick_s))
+        self._ticks: list[Tick] = []
+        self._began = False
+        self.written = 0
+        """Seconds that were written."""
+        self._thread = FileThread[Second](
+            path, self._write, ended, most=MOST_SECONDS, most_bytes=_NO_BOUND
+        )
+
+    @property
+    def waiting(self) -> int:
+        """Seconds that wait to be written."""
+        return self._thread.waiting
+
+    @property
+    def fault(self) -> Ended | None:
+        """Why the recording has ended; None while it goes on."""
+        return self._thread.fault
+
+    def take(self, frame: Frame, inputs: Sequence[Input]) -> None:
+        """Take in a tick that has ended; whatever fails here, the world goes on."""
+        if self._thread.fault is not None:
+            return
+        try:
+            if self._began:
+                given = [*inputs, ActorsStood()] if frame.actors_stood else list(inputs)
+                self._ticks.append(Tick(frame, given, self._zone.contacts.touching))
+            if not self._began or frame.tick % self._ticks_a_second == 0:
+                self._began = True
+                self._hand_over()
+        except Exception as error:
+            log.exception("a zone cannot be recorded", tick=frame.tick)
+            self._thread.fail(error)
+
+    def close(self) -> None:
+        """Write what waits and complete the file, within a bounded time."""
+        if self._ticks and self._thread.fault is None:
+            self._hand_over()
+        self._thread.close()
+
+    def _hand_over(self) -> None:
+        ticks, self._ticks = self._ticks, []
+        zone = self._zone
+        second = Second(ticks, zone.tick, time.time_ns(), zone.save_exactly())
+        self._thread.put(second, 0, ticks[0].frame.tick if ticks else zone.tick)
+
+    def _write(self, seconds: Iterator[Second]) -> None:
+        try:
+            for second in seconds:
+                self._file.write(second)
+                self.written += 1
+        except Exception:
+            self._file.drop()
+            raise
+        self._file.close()

@@ -1,0 +1,1 @@
+"""Recordings run again without a server: verified, and written as trajectories."""
