@@ -109,10 +109,12 @@ class ZoneWishes:
             return
         session.tell(ProtocolError(*fault, None))
 
-    def report(self, session: Session, report: Report) -> None:  # noqa: ARG002 - as of a hub
-        """Reports are taken by worlds of one process only."""
-        text = "nobody takes reports in this world yet"
-        session.tell(ProtocolError(ErrorCode.FORBIDDEN, text, None))
+    def report(self, session: Session, report: Report) -> None:
+        """Put a report before moderators, who are at the zone."""
+        who = self._of(session)
+        if who is not None and not self._upward.report(who, report):
+            text = "too many reports wait for the place, which does not answer"
+            session.tell(ProtocolError(ErrorCode.FLOODING, text, None))
 
     def mute(self, session: Session, wish: MutePerson) -> None:
         """Send no lines of somebody to the session any more, or send them again."""

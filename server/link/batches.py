@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, Field, TypeAdapter, ValidationError
 
 from esplanade.protocol.codes import Gesture
-from esplanade.protocol.messages import Line, WalkTo
+from esplanade.protocol.messages import Line, Report, WalkTo
 
 MAGIC: Final = b"EB"
 VERSION: Final = 1
@@ -63,6 +63,7 @@ class _Further(BaseModel):
     A program passes over those that only newer ones know.
     """
 
+    reports: list[tuple[Number, Number, Report]] = Field(default_factory=list)
     presences: list[tuple[Number, Number, bool]] = Field(default_factory=list)
     gestures: list[tuple[Number, Number, Made]] = Field(default_factory=list)
 
@@ -96,6 +97,8 @@ class Batch:
     """Persons whose clients have fallen silent, and whose avatars are to stand."""
     muted: list[tuple[int, int, list[int]]] = field(default_factory=list)
     """Whom persons do not want to hear from now on, all of them."""
+    reports: list[tuple[int, int, Report]] = field(default_factory=list)
+    """What persons tell those who look after the world."""
     presences: list[tuple[int, int, bool]] = field(default_factory=list)
     """Whether persons are away from their screens."""
     gestures: list[tuple[int, int, int]] = field(default_factory=list)
@@ -116,8 +119,10 @@ def encode_batch(batch: Batch) -> bytes:
         batch.stood,
         batch.muted,
     ]
-    if batch.presences or batch.gestures:
-        rest.append({"presences": batch.presences, "gestures": batch.gestures})
+    reports = [(person, generation, one.model_dump()) for person, generation, one in batch.reports]
+    further = {"reports": reports, "presences": batch.presences, "gestures": batch.gestures}
+    if any(further.values()):
+        rest.append({name: inputs for name, inputs in further.items() if inputs})
     packed: bytes = msgpack.packb(rest)
     return head + batch.movements.tobytes() + packed
 
@@ -160,6 +165,7 @@ def decode_batch(message: bytes) -> Batch:
         doors,
         stood,
         muted,
+        further.reports,
         further.presences,
         further.gestures,
     )

@@ -177,18 +177,7 @@ class Wishes:
 
     def report(self, session: Session, report: Report) -> None:
         """Put a report about somebody before moderators, and tell the person so."""
-        made = self._reporting.take(session, report, asyncio.get_running_loop().time())
-        if made is not None:
-            log.info("person reported", report=made.id, id=made.person, by=made.reporter)
-            about = {
-                "report": made.id,
-                "who": made.reporter,
-                "other": made.person,
-                "name": made.name,
-                "text": made.text,
-                "place": made.place,
-            }
-            self._moderation.happened("report", about)
+        self._reporting.take(session, report, asyncio.get_running_loop().time())
 
     def mute(self, session: Session, wish: MutePerson) -> None:
         """Send no lines of somebody to the session any more, or send them again."""
