@@ -43,7 +43,7 @@ OPENINGS: Final = {
     "chat": """() => { const toggle = document.querySelector('#chat-toggle');
       if (toggle.checkVisibility()) toggle.click(); }""",
     "gestures": "() => document.querySelector('#gestures-toggle').click()",
-    "told": """() => { for (const id of ['banner', 'pace', 'following', 'invitation']) {
+    "told": """() => { for (const id of ['banner', 'pace', 'following', 'invitation', 'shared']) {
       const told = document.getElementById(id);
       if (id === 'banner' || id === 'pace')
         told.textContent = 'The connection was lost. Coming back by itself…';
@@ -55,7 +55,7 @@ OPENINGS: Final = {
 CLOSED: Final = """() => {
   for (const opener of document.querySelectorAll('[aria-expanded="true"]')) opener.click();
   document.querySelector('#person-report').open = false;
-  for (const id of ['banner', 'pace', 'following', 'invitation', 'person'])
+  for (const id of ['banner', 'pace', 'following', 'invitation', 'shared', 'person'])
     document.getElementById(id).hidden = true;
 }"""
 

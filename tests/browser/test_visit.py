@@ -133,7 +133,7 @@ async def test_the_overlay_shows_the_plan_of_an_actor(url: str, profile: Browser
     ann = await Visitor.arrive(profile, url)
     await ann.join("Ann")
     await ann.page.click("#people-open")
-    actor = ann.page.locator("#people-list button").first
+    actor = ann.page.locator("#people-list li.actor button").first
     await actor.click()
     view = await ann.until(lambda view: view["plan"] is not None and len(view["plan"]["path"]) > 1)
     assert view["plan"]["id"] == view["chosenId"]

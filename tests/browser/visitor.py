@@ -50,7 +50,7 @@ class Visitor:
         page.on("pageerror", lambda error: visitor.faults.append(f"exception: {error}"))
 
         def requested(request: Request) -> None:
-            if not request.url.startswith((url, "data:", "blob:")):
+            if not request.url.startswith((url.split("#", maxsplit=1)[0], "data:", "blob:")):
                 visitor.faults.append(f"asks elsewhere: {request.url}")
 
         page.on("request", requested)

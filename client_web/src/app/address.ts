@@ -8,6 +8,8 @@ export interface AddressWish {
   operator: string | null;
   /** A place to look at and to be asked to walk to. */
   at: Place | null;
+  /** The name of somebody to be asked to follow. */
+  follow: string | null;
   /** The direction of the first view, radians from +x; null for where people are seen. */
   lookYaw: number | null;
   /** The operator's pass or the invitation that lets this person in. */
@@ -18,7 +20,7 @@ export interface AddressWish {
 
 const SECRETS = ["operator=", "pass=", "invitation="];
 
-/** Read `#operator=KEY&at=x,y,z&look=90`, with `pass=` or `invitation=`; z may be left out. */
+/** Read `#operator=KEY&at=x,y,z&look=90&follow=NAME`, with `pass=` or `invitation=`; z may be left out. */
 export function readAddress(hash: string): AddressWish {
   const parts = hash.replace(/^#/, "").split("&");
   const rest = parts.filter(
@@ -29,6 +31,7 @@ export function readAddress(hash: string): AddressWish {
     operator: wishes.get("operator"),
     admission: readAdmission(wishes),
     at: readPlace(wishes.get("at")),
+    follow: readName(wishes.get("follow")),
     lookYaw: readDirection(wishes.get("look")),
     rest: rest.length > 0 ? `#${rest.join("&")}` : "",
   };
@@ -47,6 +50,27 @@ function readPlace(text: string | null): Place | null {
   const [x = NaN, y = NaN, z = 0] = numbers;
   const fits = numbers.length <= 3 && [x, y, z].every((metres) => Math.abs(metres) <= 100_000);
   return fits ? { x, y, z } : null;
+}
+
+function readName(text: string | null): string | null {
+  const name = text?.trim() ?? "";
+  return name === "" ? null : name;
+}
+
+/** A link to a place, and to what one sees from there: the page's address without any secret. */
+export function linkToPlace(page: string, { x, y, z }: Place, yaw: number): string {
+  const place = [x, y, z].map((metres) => Number(metres.toFixed(1))).join(",");
+  const degrees = Math.round((Math.atan2(Math.sin(yaw), Math.cos(yaw)) * 180) / Math.PI);
+  return `${bare(page)}#at=${place}&look=${degrees}`;
+}
+
+/** A link that asks whether to follow somebody. */
+export function linkToPerson(page: string, name: string): string {
+  return `${bare(page)}#follow=${encodeURIComponent(name)}`;
+}
+
+function bare(page: string): string {
+  return page.split("#")[0] ?? "";
 }
 
 /** A direction in degrees, 0 to the east and 90 to the north. */

@@ -13,10 +13,11 @@ export class Manners {
   private readonly menu: GestureMenu;
   private readonly presence: Presence;
 
-  /** `calm` is for those who want little motion. */
+  /** `calm` is for those who want little motion; surroundings are told on request, by a key. */
   constructor(
     private readonly send: (message: ClientMessage) => boolean,
     private readonly calm: boolean,
+    tellSurroundings: () => void,
   ) {
     this.menu = new GestureMenu(GESTURE_NAMES, (gesture) => {
       send({ type: "gesture", gesture });
@@ -29,6 +30,7 @@ export class Manners {
       () => {
         this.menu.flip();
       },
+      tellSurroundings,
     );
     this.presence = new Presence(document, (away) => {
       send({ type: "presence", away });

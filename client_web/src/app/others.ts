@@ -20,6 +20,10 @@ export interface Company {
   stand(): void;
   linesOf(id: number): SaidLine[];
   nameOf(id: number): string;
+  /** Share a link to somebody. */
+  share(name: string): void;
+  /** Ask whether to follow somebody. */
+  invite(name: string, accept: () => void): void;
 }
 
 export class Others {
@@ -30,7 +34,11 @@ export class Others {
   private readonly bar = byId("following", HTMLElement);
   private readonly whom = byId("following-whom", HTMLElement);
 
-  constructor(private readonly company: Company) {
+  /** `linked` is the name of somebody whom a link wants to be followed. */
+  constructor(
+    private readonly company: Company,
+    private linked: string | null,
+  ) {
     this.following = new Following(
       (place) => {
         company.walkTo(place);
@@ -56,6 +64,9 @@ export class Others {
       wave: (id) => {
         company.turnTo(id);
         company.send({ type: "gesture", gesture: Gesture.WAVE });
+      },
+      share: (name) => {
+        company.share(name);
       },
       mute: (id, name, muted) => {
         this.mutes.set(name, muted);
@@ -111,6 +122,12 @@ export class Others {
     for (const { id, kind, name } of entities) {
       if (kind === "person" && this.mutes.has(name)) {
         this.company.send({ type: "mute", id, muted: true });
+      }
+      if (name === this.linked) {
+        this.linked = null;
+        this.company.invite(name, () => {
+          this.follow(id);
+        });
       }
     }
   }

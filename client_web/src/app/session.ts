@@ -6,10 +6,8 @@ import { fetchTriangles } from "../net/triangles";
 import { Connection, type ConnectionState } from "../net/connection";
 import type { Seats } from "../net/seats";
 import type { Admission, ServerMessage, Welcome } from "../net/messages";
-import type { Place } from "../render/picking";
 import { ChatPanel } from "../ui/chat";
 import { byId } from "../ui/dom";
-import { Invitation } from "../ui/invitation";
 import { JoinDialog } from "../ui/join";
 import { Minimap } from "../ui/minimap";
 import { NoticeBanner } from "../ui/notices";
@@ -18,9 +16,11 @@ import { PaceBanner } from "../ui/pace";
 import { PlanPanel } from "../ui/plan";
 import { arrivalIn, faultOf, greetingOf, noticeOf } from "../ui/sentences";
 import { StatusChip } from "../ui/status";
+import { surroundings } from "../ui/whereabouts";
 import { World } from "../world/world";
 import type { AddressWish } from "./address";
 import { Cost } from "./cost";
+import { Links } from "./links";
 import { Manners } from "./manners";
 import { Others } from "./others";
 import type { Picked, Picture } from "./picture";
@@ -49,6 +49,7 @@ export class Session {
   private readonly manners: Manners;
   private readonly others: Others;
   private readonly notices = new NoticeBanner();
+  private readonly links: Links;
   private readonly planPanel = new PlanPanel();
   private readonly planSwitch: Panel;
   /** The operator key; null for people without one. */
@@ -57,12 +58,6 @@ export class Session {
   private admission: Admission | null;
   /** Whether the welcome that comes next is that of another zone of the same world. */
   private travels = false;
-  /** Whether the camera was turned for this world; a connection that comes back turns nothing. */
-  private hasLooked = false;
-  /** A place that a link names; null once the view was turned to it. */
-  private linked: Place | null;
-  /** The direction of the first view that a link names; null once the view was turned. */
-  private lookYaw: number | null;
   /** The name that the person gave; the server may have added a number. */
   private wishedName = "";
   private frameMs = performance.now();
@@ -74,12 +69,14 @@ export class Session {
     socketUrl: string,
     /** Whether the person wants little motion. */
     calm: boolean,
-    wish: Pick<AddressWish, "operator" | "admission" | "at" | "lookYaw">,
+    wish: Omit<AddressWish, "rest">,
   ) {
     this.operator = wish.operator;
     this.admission = wish.admission;
-    this.linked = wish.at;
-    this.lookYaw = wish.lookYaw;
+    this.links = new Links(view, wish, (place) => {
+      this.walking.walkTo(place);
+    });
+    this.links.offer(() => this.world);
     this.connection = new Connection(() => new WebSocket(socketUrl), {
       state: (state) => {
         this.stateChanged(state);
@@ -107,27 +104,45 @@ export class Session {
       },
     );
     new Panel(byId("people-open", HTMLButtonElement), byId("people", HTMLElement));
-    this.others = new Others({
-      send: (message) => this.connection.send(message),
-      turnTo: (id) => {
-        this.turnTo(id);
+    this.others = new Others(
+      {
+        send: (message) => this.connection.send(message),
+        turnTo: (id) => {
+          this.turnTo(id);
+        },
+        choose: (id) => {
+          this.choose(id);
+        },
+        walkTo: (place) => {
+          this.walking.walkTo(place);
+        },
+        stand: () => {
+          this.walking.stand();
+        },
+        linesOf: (id) => this.chat.linesOf(id),
+        nameOf: (id) => this.world?.avatars.get(id)?.name ?? "",
+        share: (name) => {
+          this.links.sharePerson(name);
+        },
+        invite: (name, accept) => {
+          this.links.inviteTo(name, accept);
+        },
       },
-      choose: (id) => {
-        this.choose(id);
-      },
-      walkTo: (place) => {
-        this.walking.walkTo(place);
-      },
-      stand: () => {
-        this.walking.stand();
-      },
-      linesOf: (id) => this.chat.linesOf(id),
-      nameOf: (id) => this.world?.avatars.get(id)?.name ?? "",
-    });
+      wish.follow,
+    );
     this.minimap = new Minimap((at) => {
       this.act(at);
     });
-    this.manners = new Manners((message) => this.connection.send(message), calm);
+    this.manners = new Manners(
+      (message) => this.connection.send(message),
+      calm,
+      () => {
+        if (this.world) this.chat.note(surroundings(this.world, view.camera.yaw));
+      },
+    );
+    byId("leave", HTMLButtonElement).addEventListener("click", () => {
+      this.leave();
+    });
   }
 
   /** Rejoin at once after a reload; otherwise ask for a name. */
@@ -157,13 +172,19 @@ export class Session {
     if ("floor" in hit) {
       this.others.stopFollowing();
       this.walking.walkTo(hit.floor);
-    } else if ("door" in hit) this.moveDoor(hit.door);
-    else this.others.open(hit.avatar);
+    } else if ("door" in hit) {
+      const open = !(this.world?.doors[hit.door] ?? true);
+      this.connection.send({ type: "set_door", name: hit.door, open });
+    } else this.others.open(hit.avatar);
   }
 
-  private moveDoor(name: string): void {
-    const isOpen = this.world?.doors[name] ?? true;
-    this.connection.send({ type: "set_door", name, open: !isOpen });
+  /** Go out of the world for good; the next who comes in here is somebody new. */
+  private leave(): void {
+    this.connection.leave();
+    this.seats.forget();
+    this.others.begin();
+    this.links.end();
+    this.join.open("You have left. Come in again whenever you like.");
   }
 
   private async comeIn(name: string, password: string): Promise<void> {
@@ -247,7 +268,10 @@ export class Session {
       case "error":
         if (message.error === "password_needed") this.join.askPassword();
         if (message.error === "admission_refused") this.admission = null;
-        if (CALLED_OFF.has(message.error)) this.callOff();
+        if (CALLED_OFF.has(message.error)) {
+          this.walking.callOff();
+          this.others.stopFollowing();
+        }
         this.chat.note(faultOf(message));
         this.others.tell(faultOf(message));
         break;
@@ -275,11 +299,6 @@ export class Session {
     }
   }
 
-  private callOff(): void {
-    this.walking.callOff();
-    this.others.stopFollowing();
-  }
-
   /** A notice goes into the chat, and one of moderators into a banner too. */
   private notice(message: Extract<ServerMessage, { type: "notice" }>): void {
     const saying = noticeOf(message);
@@ -305,7 +324,7 @@ export class Session {
     this.minimap.show(welcome.scene);
     this.chosenId = null;
     this.others.begin();
-    if (!welcome.resumed || this.travels) this.hasLooked = false;
+    if (!welcome.resumed || this.travels) this.links.begin();
     this.pace.hide();
     if (welcome.scene.mesh !== undefined) void this.build(this.world, welcome.scene.mesh);
   }
@@ -321,23 +340,6 @@ export class Session {
     } catch (error) {
       this.chat.note(`The building cannot be shown: ${String(error)}.`);
     }
-  }
-
-  private lookFirst(world: World, here: Place): void {
-    this.hasLooked = true;
-    if (this.linked) this.followLink(here, this.linked);
-    else if (this.lookYaw === null) this.view.lookAround(world);
-    if (this.lookYaw !== null) this.view.camera.yaw = this.lookYaw;
-    this.lookYaw = null;
-  }
-
-  /** Look to where a link leads, and ask whether to walk there. */
-  private followLink(from: Place, to: Place): void {
-    this.linked = null;
-    this.view.camera.yaw = Math.atan2(to.y - from.y, to.x - from.x);
-    new Invitation(() => {
-      this.walking.walkTo(to);
-    }).open();
   }
 
   /** Look at somebody who was chosen without being seen. */
@@ -371,7 +373,7 @@ export class Session {
     this.frames++;
     const { world } = this;
     if (!world) return;
-    if (world.own && !this.hasLooked) this.lookFirst(world, world.own.pose);
+    this.links.look(world);
     const steppedS = Math.min(frameS, LONGEST_FRAME_S);
     this.view.camera.orbit(this.walking.turnPerS * steppedS, 0);
     this.walking.frame(this.view.camera.yaw);

@@ -45,7 +45,7 @@ export class View implements Picture {
       canvas,
       choice === "fine" || (choice === "automatic" && !this.software),
     );
-    this.camera = new FollowCamera(this.renderer.camera);
+    this.camera = new FollowCamera(this.renderer.camera, calm);
     this.marks = new Marks(calm);
     this.labels = new Labels(labelLayer);
     this.picking = new Picking(this.renderer.camera);

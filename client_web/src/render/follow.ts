@@ -33,7 +33,11 @@ export class FollowCamera {
   private readonly ray = new Raycaster();
   private placed = false;
 
-  constructor(private readonly camera: PerspectiveCamera) {}
+  /** `calm` turns at once instead of moving. */
+  constructor(
+    private readonly camera: PerspectiveCamera,
+    private readonly calm = false,
+  ) {}
 
   /** Turn by angles in radians. */
   orbit(yaw: number, pitch: number): void {
@@ -97,7 +101,7 @@ export class FollowCamera {
     if (this.wantedYaw === null) return;
     const left = this.wantedYaw - this.yaw;
     const turn = Math.atan2(Math.sin(left), Math.cos(left));
-    this.yaw += turn * Math.min(1, TURN_PER_S * frameS);
+    this.yaw += turn * (this.calm ? 1 : Math.min(1, TURN_PER_S * frameS));
     if (Math.abs(turn) < TURNED) this.wantedYaw = null;
   }
 }

@@ -1,25 +1,32 @@
-/** The question whether to walk to the place that a link names. */
+/** The question whether to go where a link leads: to a place, or after somebody. */
 
 import { byId } from "./dom";
 
 export class Invitation {
   private readonly bar = byId("invitation", HTMLElement);
+  private readonly text = byId("invitation-text", HTMLElement);
+  private readonly go = byId("invitation-go", HTMLButtonElement);
+  private accept: () => void = () => undefined;
 
-  constructor(accept: () => void) {
-    byId("invitation-go", HTMLButtonElement).addEventListener("click", () => {
+  constructor() {
+    this.go.addEventListener("click", () => {
       this.close();
-      accept();
+      this.accept();
     });
     byId("invitation-stay", HTMLButtonElement).addEventListener("click", () => {
       this.close();
     });
   }
 
-  open(): void {
+  /** Ask; `go` names what `accept` does. */
+  open(text: string, go: string, accept: () => void): void {
+    this.text.textContent = text;
+    this.go.textContent = go;
+    this.accept = accept;
     this.bar.hidden = false;
   }
 
-  private close(): void {
+  close(): void {
     this.bar.hidden = true;
   }
 }

@@ -14,6 +14,8 @@ export interface PersonWishes {
   /** Walk after somebody, or after nobody any more. */
   follow(id: number | null): void;
   wave(id: number): void;
+  /** Share a link to somebody. */
+  share(name: string): void;
   mute(id: number, name: string, muted: boolean): void;
   /** False if there is no connection. */
   report(id: number, line: number | null, text: string): boolean;
@@ -53,6 +55,9 @@ export class PersonPanel {
     });
     byId("person-wave", HTMLButtonElement).addEventListener("click", () => {
       if (this.shown) wishes.wave(this.shown.id);
+    });
+    byId("person-share", HTMLButtonElement).addEventListener("click", () => {
+      if (this.shown) wishes.share(this.shown.name);
     });
     this.follow.addEventListener("click", () => {
       const follows = this.follow.getAttribute("aria-pressed") === "true";

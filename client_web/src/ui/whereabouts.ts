@@ -1,7 +1,13 @@
-/** Where somebody is, in words: "3 m, to the left, away". */
+/** Where somebody is, in words, and all that is around: "Maple, 3 m, to the left, comes nearer". */
 
 import { STOREYS_APART_M } from "../world/heights";
-import type { Avatar } from "../world/world";
+import type { Avatar, World } from "../world/world";
+
+/** So many of the nearest are told of, and places no further away than this. */
+const MOST = 6;
+const PLACE_M = 12;
+/** Slower than this nobody comes nearer or goes away, metres a second. */
+const SLOW_MPS = 0.25;
 
 /** Names of the eight directions, the first straight ahead, and then to the left. */
 const SIDES = [
@@ -31,4 +37,41 @@ export function whereabouts(
   if (Math.abs(dz) > STOREYS_APART_M) parts.push(dz > 0 ? "further up" : "further down");
   if (away) parts.push("away from the screen");
   return parts.join(", ");
+}
+
+/** Who and what is around the own avatar, as sentences, the nearest first. */
+export function surroundings({ own, avatars, scene }: World, yaw: number): string {
+  if (!own) return "";
+  const here = own.pose;
+  const apartM = ({ x, y }: { x: number; y: number }): number => Math.hypot(x - here.x, y - here.y);
+  const onFloor = (z: number): boolean => Math.abs(z - here.z) <= STOREYS_APART_M;
+  const place = scene.places
+    .filter(({ z_m }) => onFloor(z_m))
+    .map(({ name, position: [x, y] }) => ({ name, x, y, apart: apartM({ x, y }) }))
+    .filter(({ apart }) => apart <= PLACE_M)
+    .sort((a, b) => a.apart - b.apart)[0];
+  const others = [...avatars.values()].filter(({ own: isOwn, pose }) => !isOwn && onFloor(pose.z));
+  const nearest = others.sort((a, b) => apartM(a.pose) - apartM(b.pose)).slice(0, MOST);
+  const sentences = nearest.map((other) => {
+    const how = approach(other.pose, here);
+    return `${other.name}, ${whereabouts(other, here, yaw)}${how === "" ? "" : `, ${how}`}.`;
+  });
+  if (place) {
+    const side = sideOf(Math.atan2(place.y - here.y, place.x - here.x), yaw);
+    sentences.unshift(`The place ${place.name} is ${Math.round(place.apart)} m ${side}.`);
+  }
+  const more = others.length - nearest.length;
+  if (more > 0) sentences.push(`${more} more further away.`);
+  return others.length > 0 ? sentences.join(" ") : [...sentences, "Nobody is near."].join(" ");
+}
+
+/** Whether somebody comes nearer by their own walking, or goes away. */
+function approach(
+  { x, y, heading, speed }: Avatar["pose"],
+  here: { x: number; y: number },
+): string {
+  const towards = Math.atan2(here.y - y, here.x - x);
+  const nearerMps = speed * Math.cos(heading - towards);
+  if (Math.abs(nearerMps) < SLOW_MPS) return "";
+  return nearerMps > 0 ? "comes nearer" : "goes away";
 }

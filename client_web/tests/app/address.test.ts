@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { readAddress } from "../../src/app/address";
+import { linkToPerson, linkToPlace, readAddress } from "../../src/app/address";
 
 describe("readAddress", () => {
   it("takes the operator key out and leaves the rest", () => {
@@ -7,6 +7,7 @@ describe("readAddress", () => {
       operator: "KEY",
       admission: null,
       at: null,
+      follow: null,
       lookYaw: null,
       rest: "",
     });
@@ -47,4 +48,24 @@ describe("readAddress", () => {
       expect(readAddress(`#at=${text}`).at).toBeNull();
     },
   );
+});
+
+describe("links", () => {
+  const page = "https://example.org/?v=1#operator=KEY";
+
+  it("lead to a place and a view, and hold no secret", () => {
+    const link = linkToPlace(page, { x: 1.234, y: -5, z: 3.5 }, Math.PI / 2);
+    expect(link).toBe("https://example.org/?v=1#at=1.2,-5,3.5&look=90");
+    expect(readAddress(new URL(link).hash)).toMatchObject({
+      at: { x: 1.2, y: -5, z: 3.5 },
+      lookYaw: Math.PI / 2,
+    });
+  });
+
+  it("lead to a person, whatever the name", () => {
+    const link = linkToPerson(page, "Zoë & 王 #2");
+    expect(link).not.toContain("KEY");
+    expect(readAddress(new URL(link).hash).follow).toBe("Zoë & 王 #2");
+    expect(readAddress("#follow=").follow).toBeNull();
+  });
 });

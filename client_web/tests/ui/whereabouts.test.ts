@@ -1,5 +1,6 @@
 import { expect, it } from "vitest";
-import { whereabouts } from "../../src/ui/whereabouts";
+import type { World } from "../../src/world/world";
+import { surroundings, whereabouts } from "../../src/ui/whereabouts";
 
 const here = { x: 0, y: 0, z: 0 };
 const other = (x: number, y: number, z = 0, away = false): Parameters<typeof whereabouts>[0] => ({
@@ -17,4 +18,28 @@ it.each([
   [other(0, 3, 0, true), "3 m, ahead, away from the screen"],
 ])("says where somebody is", (who, words) => {
   expect(whereabouts(who, here, NORTH)).toBe(words);
+});
+
+it("says who and what is around, the nearest first", () => {
+  const avatar = (name: string, x: number, y: number, heading = 0, speed = 0): object => ({
+    name,
+    own: false,
+    away: false,
+    pose: { x, y, z: 0, layer: 0, heading, speed, reason: 0 },
+  });
+  const around = {
+    own: { pose: { ...here, heading: 0 } },
+    avatars: new Map([
+      [1, { own: true, pose: here }],
+      [2, avatar("Far", 0, 9, NORTH, 1)],
+      [3, avatar("Maple", -3, 0, 0, 1)],
+    ]),
+    scene: { places: [{ name: "fountain", position: [0, -4], z_m: 0 }] },
+  };
+  expect(surroundings(around as unknown as World, NORTH)).toBe(
+    "The place fountain is 4 m behind. Maple, 3 m, to the left, comes nearer. " +
+      "Far, 9 m, ahead, goes away.",
+  );
+  const alone = { ...around, avatars: new Map(), scene: { places: [] } } as unknown as World;
+  expect(surroundings(alone, NORTH)).toBe("Nobody is near.");
 });

@@ -1,0 +1,72 @@
+/** Links: the first view and the offer to go where one leads, and links to share. */
+
+import type { Place } from "../render/picking";
+import { byId } from "../ui/dom";
+import { Invitation } from "../ui/invitation";
+import { ShareBar } from "../ui/share";
+import type { World } from "../world/world";
+import { type AddressWish, linkToPerson, linkToPlace } from "./address";
+import type { Picture } from "./picture";
+
+export class Links {
+  private readonly invitation = new Invitation();
+  private readonly bar = new ShareBar();
+  /** Whether the camera was turned for this world; a connection that comes back turns nothing. */
+  private hasLooked = false;
+  /** A place that a link names; null once the view was turned to it. */
+  private at: Place | null;
+  /** The direction of the first view that a link names; null once the view was turned. */
+  private lookYaw: number | null;
+
+  constructor(
+    private readonly view: Picture,
+    wish: Pick<AddressWish, "at" | "lookYaw">,
+    private readonly walkTo: (place: Place) => void,
+  ) {
+    this.at = wish.at;
+    this.lookYaw = wish.lookYaw;
+  }
+
+  /** The button shares the place where the own avatar is, and what is seen from there. */
+  offer(world: () => World | null): void {
+    byId("share", HTMLButtonElement).addEventListener("click", () => {
+      const place = world()?.own?.pose;
+      if (place) void this.bar.show(linkToPlace(location.href, place, this.view.camera.yaw));
+    });
+  }
+
+  sharePerson(name: string): void {
+    void this.bar.show(linkToPerson(location.href, name));
+  }
+
+  /** Ask whether to follow somebody who is here. */
+  inviteTo(name: string, follow: () => void): void {
+    this.invitation.open(`The link leads to ${name}, who is here.`, "Follow", follow);
+  }
+
+  /** The world is a new one: the next frame turns the camera. */
+  begin(): void {
+    this.hasLooked = false;
+  }
+
+  /** The person has left: nothing is asked any more. */
+  end(): void {
+    this.invitation.close();
+  }
+
+  /** Turn the camera once the own avatar is there, and ask whether to walk to a place. */
+  look(world: World): void {
+    const { own } = world;
+    if (this.hasLooked || !own) return;
+    this.hasLooked = true;
+    const { at, lookYaw, view } = this;
+    if (at) {
+      view.camera.yaw = Math.atan2(at.y - own.pose.y, at.x - own.pose.x);
+      this.invitation.open("The link leads to a place here.", "Walk there", () => {
+        this.walkTo(at);
+      });
+    } else if (lookYaw === null) view.lookAround(world);
+    if (lookYaw !== null) view.camera.yaw = lookYaw;
+    this.at = this.lookYaw = null;
+  }
+}
