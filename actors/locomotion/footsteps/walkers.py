@@ -125,6 +125,7 @@ class Walkers:
             right,
             left,
             np.zeros(count),
+            np.zeros(count),
             standing_keys(footprints),
         )
         self.steps.put(slots, self._publish(steps, slots))
