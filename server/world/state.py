@@ -36,7 +36,7 @@ class State:
     `before` holds the positions of the tick before; `heights` are those of the feet above the
     scene's ground, metres; `ahead` is where each is going, as in
     `esplanade.actors.locomotion.Course`; legs and statures are those drawn for an avatar, `scales`
-    times as long.
+    times as long, and `strides` the lengths of its steps against those of a free walk.
     """
 
     def __init__(self, capacity: int) -> None:
@@ -55,6 +55,7 @@ class State:
         self.reasons = np.zeros(capacity, dtype=np.uint8)
         self.radii = np.zeros(capacity)
         self.scales = np.ones(capacity)
+        self.strides = np.ones(capacity)
         self.legs_m = np.zeros(capacity)
         self.statures_m = np.zeros(capacity)
         self.names = [""] * capacity
@@ -140,7 +141,7 @@ class State:
         self.headings[slot] = self.speeds[slot] = 0.0
         self.reasons[slot] = 0
         self.radii[slot] = radius_m
-        self.scales[slot] = 1.0
+        self.scales[slot] = self.strides[slot] = 1.0
         self.names[slot] = name
         self._slots[avatar_id] = slot
         return slot

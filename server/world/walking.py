@@ -1,6 +1,7 @@
 """Everyone's feet: they follow the bodies in the world with real steps."""
 
 from dataclasses import replace
+from typing import Final
 
 import numpy as np
 import structlog
@@ -13,6 +14,9 @@ from esplanade.actors.locomotion.motion.key_poses import Steps
 from esplanade.server.world.latest_steps import LatestSteps
 from esplanade.server.world.state import Slots, State
 from esplanade.server.world.step_records import from_records, to_records
+
+_FEWEST: Final = 0.8
+"""Nobody takes fewer steps than these against those of a free walk: legs have an end."""
 
 log = structlog.get_logger(__name__)
 
@@ -30,6 +34,7 @@ class Feet:
         self._failed = -1
         self._arrivals = np.zeros(state.capacity, dtype=np.int64)
         self._scales = np.ones(state.capacity)
+        self._cadences = np.ones(state.capacity)
         _warm_up(ground, tick_s)
         self._walkers = Walkers(state.capacity, ground, tick_s, self._publish)
         self.begun = 0
@@ -67,10 +72,13 @@ class Feet:
         traits = [scaled(traits_of(self._seed, avatar), scale) for avatar, scale in of_new]
         state.legs_m[new] = [each.leg_m for each in traits]
         state.statures_m[new] = [each.stature_m for each in traits]
+        self._cadences[new] = [each.cadence_factor for each in traits]
         try:
             if len(new):
                 self._walkers.join(tick, new, traits, self._course(new))
                 self._arrivals[new], self._scales[new] = state.arrivals[new], state.scales[new]
+            cadences = np.maximum(self._cadences[live] / state.strides[live], _FEWEST)
+            self._walkers.set_cadences(live, cadences)
             if not still:
                 self._walkers.update(tick, live, self._course(live))
         except Exception:
