@@ -19,7 +19,7 @@ from esplanade.actors.parameters import ActorParameters, body_of
 from esplanade.actors.people import ObservedPeople, People
 from esplanade.actors.planning_interval import PlanningInterval
 from esplanade.actors.potential_pool import Goal, GoalKey, PotentialPool, goal_key
-from esplanade.actors.saved_agents import check_saved
+from esplanade.actors.saved_agents import check_saved, with_new_parameters
 from esplanade.actors.saved_detours import read_detours
 from esplanade.actors.standing import StandingPeople, stand_on
 from esplanade.actors.standing_discs import ACTOR_ROOM_M, PERSON_ROOM_M, Standing
@@ -413,7 +413,7 @@ class Navigator:
     def _checked_table(
         self, header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]
     ) -> AgentTable:
-        table = AgentTable.load(header, arrays)
+        table = AgentTable.load(header, with_new_parameters(arrays))
         if table.agents.planned.shape[1] != self.plan.slices + 1:
             raise SavedAgentsError(
                 f"saved agents plan {table.agents.planned.shape[1] - 1} slices ahead, "

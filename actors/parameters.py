@@ -225,6 +225,17 @@ class ActorParameters(BaseModel):
             "ends where it is, beside a goal that is taken or before a way that is blocked.",
         ),
     ] = 30.0
+    stride: Annotated[
+        float,
+        _field(
+            "speed",
+            "1",
+            0.5,
+            1.25,
+            "Length of its steps against those of a free walk at the same speed; with longer steps "
+            "it takes fewer.",
+        ),
+    ] = 1.0
 
     @model_validator(mode="after")
     def _legs_reach(self) -> Self:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import get_args
+from collections.abc import Mapping
+from typing import Any, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,7 +11,7 @@ from numpy.typing import NDArray
 from esplanade.actors.outcomes import Kind, Outcome
 from esplanade.actors.parameters import ActorParameters
 from esplanade.actors.state import Reason
-from esplanade.planning import AgentTable, LayeredGrid, SavedAgentsError
+from esplanade.planning import PARAMETERS, AgentTable, LayeredGrid, SavedAgentsError
 
 MOST_M = 1_000_000.0
 _FINITE = ("velocities", "headings", "heights", "behind_s", "planned", "followed", "goals")
@@ -24,6 +25,23 @@ _BOUNDED_TRIPS = (
     "stood_s",
 )
 _PERHAPS = ("wanted", "points_at")
+
+
+def with_new_parameters(arrays: Mapping[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
+    """The columns of saved agents, with usual values for parameters that are newer than they are.
+
+    Whatever else may be wrong with the columns is left for others to refuse.
+    """
+    out = dict(arrays)
+    saved = out.get("parameters")
+    names, known = () if saved is None else saved.dtype.names or (), PARAMETERS.names or ()
+    if saved is None or not names or names == known or names != known[: len(names)]:
+        return out
+    complete = np.full(saved.shape, ActorParameters().row(), dtype=PARAMETERS)
+    for name in names:
+        complete[name] = saved[name]
+    out["parameters"] = complete
+    return out
 
 
 def check_saved(table: AgentTable, grid: LayeredGrid) -> None:

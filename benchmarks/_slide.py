@@ -111,13 +111,16 @@ class Planted(NamedTuple):
 def _planted(steps: Steps, rows: Rows, shares: Floats) -> Planted:
     """Find the planted feet.
 
-    The standing foot is always planted. The swing foot is planted until its toe lifts, and again
-    from the end of its step.
+    The standing foot is planted until it pushes off for a flight. The swing foot is planted until
+    its toe lifts, and again from the end of its step.
     """
+    stands = np.arange(len(rows)), steps.on_right[rows].astype(np.int64)
+    flight = steps.flight[rows]
     swings = np.arange(len(rows)), 1 - steps.on_right[rows].astype(np.int64)
     lift = steps.lift[rows]
     at_all = np.ones((len(rows), 2), dtype=np.bool_)
     on_toe = np.zeros((len(rows), 2), dtype=np.bool_)
+    at_all[stands] = (flight <= 0.0) | (shares <= 1.0 - flight)
     on_toe[swings] = (lift > 0.0) & (shares <= lift)
     at_all[swings] = on_toe[swings] | (shares >= 1.0)
     return Planted(at_all, on_toe)

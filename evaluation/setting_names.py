@@ -25,6 +25,7 @@ NAMES: Final = (
     "leg_length_m",
     "edge_cells",
     "patience_s",
+    "stride",
     "risk.person_radius_m",
     "risk.contact_margin_m",
     "risk.influence_m",

@@ -7,7 +7,7 @@ from esplanade.commandline.parser import Parser
 from esplanade.commandline.pictures import add_picture
 from esplanade.commandline.readers import SEED_LIMIT, Folder, OutputFile, Whole
 
-WALKS: Final = ("flat", "curve", "stairs", "start-stop")
+WALKS: Final = ("flat", "run", "curve", "stairs", "start-stop")
 FRAMES_A_SECOND: Final = (10, 20, 25, 50)
 """Rates that GIF can show: it counts in hundredths of a second."""
 DEFAULT_FRAMES_A_SECOND: Final = 20
@@ -49,8 +49,8 @@ def _render(commands: "SubParsers[Parser]") -> Parser:
         "render",
         run="esplanade.footage.cli:render",
         help="draw walks: strips, trails and films",
-        description="Walk on level ground, round bends, up and down stairs, and with sudden stops "
-        "and\nstarts; draw each walk as strips and a GIF.",
+        description="Walk and run on level ground, walk round bends, up and down stairs, and with "
+        "sudden\nstops and starts; draw each walk as strips and a GIF.",
     )
     _add_folder(made)
     add_picture(made)

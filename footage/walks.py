@@ -41,7 +41,7 @@ class Walk:
 
 def walks() -> dict[str, Walk]:
     """All walks by name."""
-    return {walk.name: walk for walk in (_flat(), _curve(), _stairs(), _start_stop())}
+    return {walk.name: walk for walk in (_flat(), _run(), _curve(), _stairs(), _start_stop())}
 
 
 def _flat() -> Walk:
@@ -53,6 +53,18 @@ def _flat() -> Walk:
         _with_rests(places),
         view=(-78.0, 9.0),
         spans_s=((0.4, 1.6), (2.2, 3.4), (4.2, 5.4)),
+    )
+
+
+def _run() -> Walk:
+    places = _along(np.array([[0.0, 0.0], [9.0, 0.0]]), 2.6, ramp_s=1.0)
+    return _walk(
+        "run",
+        "from standing to a run at 2.6 m/s and back",
+        _ground(),
+        _with_rests(places),
+        view=(-78.0, 9.0),
+        spans_s=((0.4, 1.6), (2.0, 3.2), (3.8, 5.0)),
     )
 
 

@@ -104,7 +104,12 @@ STANDS_ON_RIGHT: Final = 1
 RE_AIMED: Final = 2
 """Flag of a step that takes the place of the rest of one under way."""
 
+FLIGHT_SHIFT: Final = 2
+"""The flags above the lowest bits are the share of the step that is flown, a number of 6 bits."""
+MOST_FLIGHT: Final = 0x3F
+
 # Quanta of the fields.
+FLIGHT: Final = 1.0 / 128.0
 FOOTPRINT_M: Final = 1e-4
 FOOTPRINT_RAD: Final = 2.0 * np.pi / 65536.0
 KEY_M: Final = 1e-4
@@ -183,6 +188,8 @@ class Steps:
     lifts: Floats
     """(N,): toe-off, the share of the duration until which the swing foot's toe stays where key 0
     has it."""
+    flights: Floats
+    """(N,): the share of the duration, at its end, in which the standing foot is in the air."""
     keys: Keys
 
 
@@ -208,7 +215,9 @@ def pack_steps(steps: Steps) -> StepRecords:
     keys = steps.keys
     records = new_step_records(len(steps.ids))
     records["id"] = steps.ids
+    flown = np.clip(np.rint(steps.flights / FLIGHT), 0, MOST_FLIGHT).astype(np.int64)
     records["flags"] = STANDS_ON_RIGHT * steps.on_right + RE_AIMED * steps.re_aimed
+    records["flags"] |= (flown << FLIGHT_SHIFT).astype(np.uint8)
     records["tick"] = steps.begin_ticks & 0xFFFF_FFFF
     records["ticks"] = np.clip(steps.durations_ticks, 0, MAX_TICKS)
     records["lift"] = np.rint(np.clip(steps.lifts, 0.0, 1.0) * 0xFF)
@@ -249,6 +258,7 @@ def unpack_steps(records: StepRecords) -> Steps:
         standing=standing,
         landing=landing,
         lifts=records["lift"] / 0xFF,
+        flights=(records["flags"] >> FLIGHT_SHIFT).astype(np.float64) * FLIGHT,
         keys=_keys(unpack_between(ends[0], ends[1], re_aimed, packed), standing, landing),
     )
 

@@ -28,6 +28,7 @@ BODY_PARAMETERS: Final = frozenset(
         "step_on_m",
         "leg_length_m",
         "edge_cells",
+        "stride",
     }
 )
 """Parameters of the body, which are not varied by default."""

@@ -36,6 +36,7 @@ PARAMETERS = np.dtype(
         ("leg_length_m", "f8"),
         ("edge_cells", "f8"),
         ("patience_s", "f8"),
+        ("stride", "f8"),
     ]
 )
 """An agent's parameters as kernels know them, one field each, in the units of their names."""

@@ -80,6 +80,7 @@ class ActorAvatars:
         state.reasons[slots] = agents.reasons
         state.radii[slots] = agents.parameters["radius_m"]
         state.scales[slots] = agents.parameters["height_m"] / Body.height_m
+        state.strides[slots] = agents.parameters["stride"]
         places = np.column_stack([agents.positions, agents.heights])
         slice_s = self._population.navigator.plan.slice_s
         ahead, pushed = planned_places(agents.planned, slice_s, self._tick_s, places)

@@ -33,6 +33,7 @@ _COLUMNS: Final = (
     "reasons",
     "radii",
     "scales",
+    "strides",
     "legs_m",
     "statures_m",
     "away",
@@ -57,7 +58,8 @@ class State:
     `before` holds the positions of the tick before; `heights` are those of the feet above the
     scene's ground, metres; `ahead` is where each is going, as in
     `esplanade.actors.locomotion.Course`; legs and statures are those drawn for an avatar, `scales`
-    times as long. `away` marks those who wait for their people.
+    times as long, and `strides` the lengths of its steps against those of a free walk. `away` marks
+    those who wait for their people.
     """
 
     def __init__(self, capacity: int) -> None:
@@ -76,6 +78,7 @@ class State:
         self.reasons = np.zeros(capacity, dtype=np.uint8)
         self.radii = np.zeros(capacity)
         self.scales = np.ones(capacity)
+        self.strides = np.ones(capacity)
         self.legs_m = np.zeros(capacity)
         self.statures_m = np.zeros(capacity)
         self.away = np.zeros(capacity, dtype=np.bool_)
@@ -162,7 +165,7 @@ class State:
         self.headings[slot] = self.speeds[slot] = 0.0
         self.reasons[slot] = 0
         self.radii[slot] = radius_m
-        self.scales[slot] = 1.0
+        self.scales[slot] = self.strides[slot] = 1.0
         self.away[slot] = False
         self.names[slot] = name
         self._slots[avatar_id] = slot

@@ -15,6 +15,9 @@ from esplanade.server.world.state import Slots
 _LAYOUT: Final = Layout(
     wire.STANDS_ON_RIGHT,
     wire.RE_AIMED,
+    wire.FLIGHT_SHIFT,
+    wire.MOST_FLIGHT,
+    wire.FLIGHT,
     wire.MAX_TICKS,
     wire.FOOTPRINT_M,
     wire.FOOTPRINT_RAD,

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 import structlog
@@ -15,6 +15,9 @@ from esplanade.actors.locomotion.motion.key_poses import Steps
 from esplanade.server.world.latest_steps import LatestSteps
 from esplanade.server.world.state import Slots, State
 from esplanade.server.world.step_records import from_records, to_records
+
+_FEWEST: Final = 0.8
+"""Nobody takes fewer steps than these against those of a free walk: legs have an end."""
 
 log = structlog.get_logger(__name__)
 
@@ -32,6 +35,7 @@ class Feet:
         self._failed = -1
         self._arrivals = np.zeros(state.capacity, dtype=np.int64)
         self._scales = np.ones(state.capacity)
+        self._cadences = np.ones(state.capacity)
         _warm_up(ground, tick_s)
         self._walkers = Walkers(state.capacity, ground, tick_s, self._publish)
         self.begun = 0
@@ -63,7 +67,11 @@ class Feet:
         They are copies of arrays in the order of the live slots.
         """
         live = self._state.live()
-        stood = {"arrivals": self._arrivals[live], "scales": self._scales[live]}
+        stood = {
+            "arrivals": self._arrivals[live],
+            "scales": self._scales[live],
+            "cadences": self._cadences[live],
+        }
         feet = self._walkers.save(live)
         own = {name: column for name, column in feet.items() if name not in Steps._fields}
         return {**stood, "walkers": own, "failed": self._failed}
@@ -79,6 +87,7 @@ class Feet:
         live = self._state.live()
         self._arrivals[:], self._scales[:] = 0, 1.0
         self._arrivals[live], self._scales[live] = saved["arrivals"], saved["scales"]
+        self._cadences[live] = saved["cadences"]
         steps = from_records(self._latest.records[live])
         self._walkers.load(live, {**saved["walkers"], **steps._asdict()})
         self._failed = int(saved["failed"])
@@ -95,10 +104,13 @@ class Feet:
         traits = [scaled(traits_of(self._seed, avatar), scale) for avatar, scale in of_new]
         state.legs_m[new] = [each.leg_m for each in traits]
         state.statures_m[new] = [each.stature_m for each in traits]
+        self._cadences[new] = [each.cadence_factor for each in traits]
         try:
             if len(new):
                 self._walkers.join(tick, new, traits, self._course(new))
                 self._arrivals[new], self._scales[new] = state.arrivals[new], state.scales[new]
+            cadences = np.maximum(self._cadences[live] / state.strides[live], _FEWEST)
+            self._walkers.set_cadences(live, cadences)
             if not still:
                 self._walkers.update(tick, live, self._course(live))
         except Exception:

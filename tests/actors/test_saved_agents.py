@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from esplanade.actors import Navigator
-from esplanade.planning import SavedAgentsError
-from tests.actors.worlds import navigator, plaza
+from esplanade.planning import PARAMETERS, SavedAgentsError
+from tests.actors.worlds import BODY, navigator, plaza
 
 DISC = [4.0, 4.0, 0.0, 0.5]
 
@@ -54,3 +54,17 @@ def test_ways_around_people_that_cannot_be_are_refused_and_nothing_changes(detou
     assert np.array_equal(other.table.agents.potential_rows, before)
     assert sum(other.potentials.users) == 1
     other.tick()
+
+
+def test_actors_saved_before_a_parameter_was_known_get_its_usual_value() -> None:
+    header, arrays = walking("a").save()
+    older = [name for name in PARAMETERS.names or () if name != "stride"]
+    known = np.zeros(1, dtype=[(name, "f8") for name in older])
+    for name in older:
+        known[name] = arrays["parameters"][name]
+    known["radius_m"] = 0.3
+    other = walking("b")
+    other.load(header, {**arrays, "parameters": known})
+    assert other.parameters("a") == BODY.model_copy(update={"radius_m": 0.3})
+    with pytest.raises(SavedAgentsError, match="column 'parameters' of saved agents must be"):
+        other.load(header, {**arrays, "parameters": known[older[1:]]})

@@ -279,6 +279,7 @@ def _step(steps: Steps, row: int) -> dict[str, Any]:
         "standing": _footprint(steps.standing, row),
         "landing": _footprint(steps.landing, row),
         "lift": float(steps.lifts[row]),
+        "flight": float(steps.flights[row]),
         "keys": np.round(numbers.ravel(), 12).tolist(),
     }
 

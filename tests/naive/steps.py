@@ -32,6 +32,7 @@ from esplanade.actors.locomotion.reference.posing import left_and_right
 from esplanade.actors.locomotion.reference.rotations import about, multiply, normalise, rotate
 from esplanade.planning.compiled.arrays import Floats
 from tests.naive.headings import wrap_angle
+from tests.naive.planted.flight import flown, towed
 
 LANDING = [7, 8, 9, 10, 12]
 
@@ -128,6 +129,8 @@ def _feet(
 ) -> tuple[Floats, Floats, Floats, Floats]:
     """Ankles (N, 2, 3), pitches, headings (N, 2), and how far each stands on its toe (N, 2)."""
     standing = standing_ankles(steps.standing, key[:, STANDING_PITCH], sizes.foot_m)
+    travel = steps.keys[:, -1, :2] - steps.keys[:, 0, :2]
+    standing = standing + flown(u, steps.flight)[:, None] ** 2 * towed(travel, steps.flight)
     swing = steps.landing[:, :3] + key[:, ANKLE]
     right = steps.on_right.astype(np.int64)
     rows = np.arange(len(right))
@@ -187,6 +190,7 @@ def inertialise(
     keys: Floats,
     now: CurrentPose,
     re_aimed: NDArray[np.bool_],
+    from_air: NDArray[np.bool_],
     ticks: NDArray[np.int64],
     aside: Floats,
 ) -> Floats:
@@ -206,7 +210,10 @@ def inertialise(
     body = np.ones(WIDTH, dtype=np.bool_)
     body[ANKLE] = False
     body[[SWING_PITCH, STANDING_PITCH, SWING_HEADING]] = False
-    keys[:, 1] = np.where(body | re_aimed[:, None], second, keys[:, 1])
+    swing = np.zeros(WIDTH, dtype=np.bool_)
+    swing[ANKLE] = swing[SWING_PITCH] = True
+    free = body | re_aimed[:, None] | from_air[:, None] & swing
+    keys[:, 1] = np.where(free, second, keys[:, 1])
     for part in (PELVIS, CHEST):
         keys[..., part] = normalise(keys[..., part])
     return keys

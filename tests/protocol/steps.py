@@ -40,6 +40,7 @@ def made_up_steps(count: int, seed: int = 0) -> Steps:
             chests=from_twist(within(-0.2, 0.2, KEYS), angles[..., 2]),
             arms_rad=within(-1.5, 1.5, KEYS, 4),
         ),
+        flights=within(0.0, 0.49),
     )
 
 

@@ -184,6 +184,7 @@ def a_step_of_known_bytes(*, re_aimed: bool) -> Steps:
         standing=Footprints(np.array([[1.0, -1.0, 0.25]]), np.array([np.pi / 2])),
         landing=Footprints(landing, np.array([-np.pi / 2])),
         lifts=np.array([1.0]),
+        flights=np.array([0.25]),
         keys=Keys(
             roots_m=np.stack([0.75 + 0.5 * share, level[0] - 1.0, level[0] + 1.125], axis=1)[None],
             pelvises=from_angles(np.stack([level, level + 0.125, level - 0.0625], axis=-1)),
@@ -201,7 +202,7 @@ def test_the_layout_byte_by_byte() -> None:
     block = pack_steps(a_step_of_known_bytes(re_aimed=True)).tobytes()
     assert len(block) == STEP.itemsize == 140
     assert block[:36].hex(" ") == (
-        "01 8c 00 04 03 02 01 03 08 07 06 05 09 ff "
+        "01 8c 00 04 03 02 01 83 08 07 06 05 09 ff "
         "10 27 00 00 f0 d8 ff ff c4 09 00 00 00 40 "
         "88 13 00 00 00 00 00 c0"
     )

@@ -23,8 +23,11 @@ from esplanade.actors.locomotion.footsteps._limit_kernels import (
     clamped_distance,
     clamped_foot,
     distance_and_limit,
+    longest_step,
     wrapped,
 )
+from esplanade.actors.locomotion.gait._curve_kernels import mix, smooth
+from esplanade.actors.locomotion.planted._flight_kernels import LANDS_AHEAD, SHORTEST_RUN
 from esplanade.actors.locomotion.planted.footprints import HEADING, Z
 from esplanade.planning.compiled.arrays import Floats
 from esplanade.planning.compiled.jit import inlined
@@ -48,6 +51,9 @@ _OPENING_RAD = 1.6
 """The greatest angle by which a foot is turned outwards against the other one."""
 _CLOSING_RAD = 1.0
 """The greatest angle by which a foot is turned inwards against the other one."""
+
+_SURE_RUN = SHORTEST_RUN + 0.07
+"""From this length on heels land as near to the hips as in a run, leg lengths."""
 
 _PLACES = 6
 _AHEAD, _HALFWAY, _UNDER, _FAR_UNDER, _PART_UNDER = 0, 1, 2, 3, 4
@@ -84,7 +90,8 @@ def _heel_ahead_of_hips(table: HeelTable, length: float) -> float:
     """Distance ahead of the hips, leg lengths, where the heel of a step of a length lands."""
     last = len(table.length) - 1
     if length >= table.length[last]:
-        return float(table.ahead[last])
+        runs = smooth((length - table.length[last]) / (_SURE_RUN - table.length[last]))
+        return mix(table.ahead[last], LANDS_AHEAD, runs)
     k = max(int(np.searchsorted(table.length, length, side="right")) - 1, 0)
     rise = table.ahead[k + 1] - table.ahead[k]
     slope = rise / (table.length[k + 1] - table.length[k])
@@ -121,7 +128,9 @@ def choose_foothold(
     turn = side * wrapped(desired - standing[HEADING])
     heading = standing[HEADING] + side * min(max(turn, -_CLOSING_RAD), _OPENING_RAD)
 
-    _, limit = distance_and_limit(x, y, standing)
+    legs_a_second = math.hypot(x_mps, y_mps) / leg_m
+    longest = longest_step(legs_a_second)
+    _, limit = distance_and_limit(x, y, standing, legs_a_second)
     hips_x, hips_y = clamped_distance(x, y, standing[0], standing[1], 1.1 * limit * leg_m)
     cos, sin = math.cos(heading), math.sin(heading)
     ahead_mps = x_mps * cos + y_mps * sin
@@ -153,7 +162,7 @@ def choose_foothold(
         elif place == _PART_UNDER:
             to_x, to_y = 0.5 * (standing[0] + under_x), 0.5 * (standing[1] + under_y)
             to_z = 0.5 * (standing[Z] + z)
-        landing[0], landing[1] = clamped_foot(to_x, to_y, standing, middle, side, leg_m)
+        landing[0], landing[1] = clamped_foot(to_x, to_y, standing, middle, side, longest, leg_m)
         landing[Z] = to_z
         found = settle_foot(ground, covering, landing, FOOT * leg_m)
         limit_m = climb_m if place < _FAR_UNDER else under_m

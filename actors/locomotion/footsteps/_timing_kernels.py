@@ -10,7 +10,7 @@ from esplanade.actors.locomotion.footsteps._course_kernels import (
     along,
     velocity_about,
 )
-from esplanade.actors.locomotion.footsteps._limit_kernels import distance_and_limit
+from esplanade.actors.locomotion.footsteps._limit_kernels import distance_and_limit, longest_step
 from esplanade.actors.locomotion.gait.durations import step_duration_s
 from esplanade.actors.locomotion.planted.footprints import Z
 from esplanade.planning.compiled.arrays import Floats
@@ -25,8 +25,6 @@ SHORTEST_REST_S = 0.2
 """Shortest rest of a step under way that has to end elsewhere."""
 LONGEST_S = 0.8
 
-_LONGEST = 0.68
-"""Longest step that is walked, leg lengths: a body that is faster takes it in less time."""
 _RISE_M = 0.15
 """Stairs are walked tread by tread: a step that would climb more than this is shortened."""
 _HURRY = 2.5
@@ -43,12 +41,12 @@ def within_reach_s(ahead: Floats, standing: Floats, leg_m: float, seconds: float
 
     The step would take `seconds` from now on; the result is SHORTEST_REST_S or more.
     """
-    distance, limit = distance_and_limit(
-        along(ahead, seconds, 0), along(ahead, seconds, 1), standing
-    )
-    rise = abs(along(ahead, seconds, 2) - ahead[0, 2])
     x_mps, y_mps = velocity_about(ahead, seconds)
     speed = max(math.hypot(x_mps, y_mps), 0.1)
+    distance, limit = distance_and_limit(
+        along(ahead, seconds, 0), along(ahead, seconds, 1), standing, speed / leg_m
+    )
+    rise = abs(along(ahead, seconds, 2) - ahead[0, 2])
     left = seconds - max(distance - limit * leg_m, 0.0) / speed
     steep = max(rise / _RISE_M, 1.0)
     return float(max(left / min(steep, _HURRY), SHORTEST_REST_S))
@@ -59,12 +57,13 @@ def duration_s(ahead: Floats, standing: Floats, leg_m: float, cadence_factor: fl
     """Duration of the next step of a body on a course (AHEAD, 3), while its foot (4,) stands.
 
     Length times duration of a free walk is fixed (`gait/durations.py`), so that the speed decides
-    both. A body that stands takes CLOSING_S.
+    both, up to the longest step of that speed. A body that stands takes CLOSING_S.
     """
     x_mps, y_mps = velocity_about(ahead, 2.0 * AHEAD_S)
     legs_a_second = max(math.hypot(x_mps, y_mps) / leg_m, 1e-9)
     natural = math.sqrt(_FREE * legs_a_second)
-    seconds = min(min(natural, _LONGEST) / legs_a_second / cadence_factor, LONGEST_S)
+    length = min(natural, longest_step(legs_a_second))
+    seconds = min(length / legs_a_second / cadence_factor, LONGEST_S)
     if legs_a_second * leg_m < 0.5 * WALKING_MPS:
         seconds = CLOSING_S
     rise = abs(along(ahead, seconds, 2) - standing[Z])

@@ -167,12 +167,13 @@ def step_to_re_aim(
 ) -> Trigger:
     """Whether the step under way has to end elsewhere, because the body goes another way.
 
-    The arguments are those of `step_to_begin`.
+    Nobody turns in the air: a step that flies ends as it is. The arguments are those of
+    `step_to_begin`.
     """
     never = Trigger(GOES_ON, False, 0, 0.0)
     start, end = steps.start[slot], steps.start[slot] + steps.ticks[slot]
     share = share_at(start, steps.ticks[slot], tick)
-    if not 0.0 < share < _LAST:
+    if not 0.0 < share < _LAST or share >= 1.0 - steps.flight[slot]:
         return never
     left_s = (end - tick) * tick_s
     x_mps, y_mps = velocity_about(ahead, left_s)

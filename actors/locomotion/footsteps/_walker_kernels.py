@@ -212,13 +212,15 @@ def begin_steps(
         steps.standing[at],
         steps.landing[at],
         steps.lift[at],
+        steps.flight[at],
         steps.keys[at],
     )
     hips = np.empty((count, 2))
     footprints = _footprints(walkers, old, triggered, slots, headings, ahead, tick_s, hips)
     now = current_pose(old, tick, footprints, triggered.swapped)
     elapsed = _elapsed(walkers, old, triggered, at, tick)
-    keys, lift = np.empty((count, KEYS, WIDTH)), np.zeros(count)
+    keys = np.empty((count, KEYS, WIDTH))
+    lift, flight = np.zeros(count), np.zeros(count)
     fill_step_keys(
         StepFootprints(
             footprints.on_right[:begun],
@@ -235,6 +237,7 @@ def begin_steps(
         walkers.gait,
         keys[:begun],
         lift[:begun],
+        flight[:begun],
     )
     for k in range(begun):
         if triggered.re_aimed[k]:
@@ -254,7 +257,13 @@ def begin_steps(
         keys[begun:],
     )
     placement = Placement(
-        footprints.on_right, footprints.standing, footprints.landing, lift, footprints.leg_m
+        footprints.on_right,
+        footprints.standing,
+        footprints.landing,
+        lift,
+        flight,
+        keys,
+        footprints.leg_m,
     )
     let_legs_reach(placement, keys)
     walkers.lifted[at] = footprints.lifted
@@ -267,6 +276,7 @@ def begin_steps(
         footprints.standing,
         footprints.landing,
         lift,
+        flight,
         keys,
     )
 

@@ -25,7 +25,7 @@ from esplanade.actors.locomotion.motion.key_poses import Steps, no_steps
 from esplanade.actors.locomotion.motion.transitions import standing_keys
 from esplanade.actors.locomotion.planted.footprints import HEADING, ON_MAP, StepFootprints, Z
 from esplanade.actors.locomotion.planted.step import gait_tables
-from esplanade.planning.compiled.arrays import Ints
+from esplanade.planning.compiled.arrays import Floats, Ints
 from esplanade.planning.compiled.handle import make_handle
 
 Publish = Callable[[Steps, Ints], Steps]
@@ -74,6 +74,10 @@ class Walkers:
         goals.leg_m[slots] = [each.leg_m for each in traits]
         goals.cadence_factor[slots] = [each.cadence_factor for each in traits]
         self._stand(tick, slots, course)
+
+    def set_cadences(self, slots: Ints, factors: Floats) -> None:
+        """Let walkers in slots (N,) take so many times as many steps, (N,), as most people do."""
+        self._arrays.goals.cadence_factor[slots] = factors
 
     def update(self, tick: int, slots: Ints, course: Course) -> None:
         """Begin and re-aim the steps of one tick.
@@ -152,6 +156,7 @@ class Walkers:
             np.zeros(count, np.int64),
             right,
             left,
+            np.zeros(count),
             np.zeros(count),
             standing_keys(footprints),
         )

@@ -67,7 +67,18 @@ def current_pose(old: Steps, tick: int, footprints: StepFootprints, swapped: Boo
     fill_samples(old.keys, old.landing, old.lift, share, foot_m, now)
     fill_samples(old.keys, old.landing, old.lift, before, foot_m, speed)
     legs = new_leg_poses(count)
-    placement = Placement(old.on_right, old.standing, old.landing, old.lift, footprints.leg_m)
+    placement = Placement(
+        old.on_right,
+        old.standing,
+        old.landing,
+        old.lift,
+        old.flight,
+        old.keys,
+        footprints.leg_m,
+    )
+    earlier = new_leg_poses(count)
+    if np.any(old.flight > 0.0):
+        fill_leg_poses(placement, before, speed, REACH, earlier)
     fill_leg_poses(placement, share, now, REACH, legs)
     for i in range(count):
         passed = (share[i] - before[i]) * old.ticks[i]
@@ -85,8 +96,10 @@ def current_pose(old: Steps, tick: int, footprints: StepFootprints, swapped: Boo
         turned = legs.headings[i, swing] - footprints.landing[i, HEADING]
         now[i, SWING_HEADING] = (turned + math.pi) % _TURN - math.pi
         if swapped[i]:
-            for d in range(ANKLE, ANKLE + 3):
-                speed[i, d] = 0.0
+            in_air = old.flight[i] > 0.0 and moving
+            for d in range(3):
+                moved = legs.ankles[i, swing, d] - earlier.ankles[i, swing, d]
+                speed[i, ANKLE + d] = moved / passed if in_air else 0.0
             speed[i, SWING_HEADING] = 0.0
             swung = speed[i, SWING_PITCH]
             speed[i, SWING_PITCH] = speed[i, STANDING_PITCH]

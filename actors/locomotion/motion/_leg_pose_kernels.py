@@ -11,12 +11,14 @@ from esplanade.actors.locomotion.body.skeleton import FOOT, TRACK_HALF_WIDTH
 from esplanade.actors.locomotion.gait._curve_kernels import smooth
 from esplanade.actors.locomotion.motion._key_pose_kernels import (
     ANKLE,
+    KEYS,
     PELVIS,
     SETTLE,
     STANDING_PITCH,
     SWING_HEADING,
     SWING_PITCH,
 )
+from esplanade.actors.locomotion.planted._flight_kernels import flown, towed
 from esplanade.actors.locomotion.planted.footprints import HEADING
 from esplanade.planning.compiled.arrays import Bools, Floats
 from esplanade.planning.compiled.jit import inlined, kernel
@@ -32,12 +34,14 @@ EASE_RAD = 0.1
 
 
 class Placement(NamedTuple):
-    """All that decides, besides keys, the places of the feet of N steps; fields as in `Steps`."""
+    """All that decides, besides a pose, the places of the feet of N steps; fields as in `Steps`."""
 
     on_right: Bools
     standing: Floats
     landing: Floats
     lift: Floats
+    flight: Floats
+    keys: Floats
     leg_m: Floats
     """(N,): length of the leg."""
 
@@ -118,6 +122,7 @@ def fill_leg_poses(
     """
     root, hips, ankles, pitches, headings = out
     standing, landing, lift = given.standing, given.landing, given.lift
+    first, last = given.keys[:, 0], given.keys[:, KEYS - 1]
     toe = np.empty(3)
     for i in range(len(u)):
         leg = given.leg_m[i]
@@ -137,6 +142,11 @@ def fill_leg_poses(
         headings[i, swings] = landing[i, HEADING] + key[i, SWING_HEADING]
         # The standing foot is on its heel while the toe is up, else on its toe.
         _set_toe_from_ankle(toe, standing[i], 0.0, standing[i, HEADING], foot)
+        over = flown(u[i], given.flight[i])
+        if over > 0.0:
+            way = towed(last[i, 0] - first[i, 0], last[i, 1] - first[i, 1], given.flight[i])
+            for d in range(3):
+                toe[d] += over * over * way[d]
         _set_ankle_from_toe(ankles[i, stands], toe, min(pitch, 0.0), standing[i, HEADING], foot)
         for side in range(2):
             on_toe = smooth(-pitches[i, side] / EASE_RAD)

@@ -26,6 +26,9 @@ from esplanade.actors.locomotion.planted.targets import Targets
 from esplanade.planning.compiled.arrays import Bools, Floats, Ints
 from esplanade.planning.compiled.jit import inlined, kernel
 
+MOST_FLOWN = 63.0 / 128.0
+"""A record says at most that this share of its step is flown."""
+
 _TURN = 2.0 * math.pi
 _SHARES = np.linspace(0.0, 1.0, KEYS)
 
@@ -81,6 +84,7 @@ def inertialise(
     first: Floats,
     speed: Floats,
     re_aimed: Bools,
+    from_air: Bools,
     ticks: Ints,
     aside: Floats,
 ) -> None:
@@ -89,7 +93,8 @@ def inertialise(
     The current pose is first (N, WIDTH), and speed (N, WIDTH) its change in a tick: its difference
     to key 0 fades over the step. The slope at key 0 is that of the parabola through the first three
     keys. Feet that have just changed parts are left to their paths: one rests on its toe, the other
-    one rolls onto its sole. Signs of quaternions in first and speed may be changed.
+    one rolls onto its sole; after a flight (`from_air`, (N,)) the one goes on as it is moving.
+    Signs of quaternions in first and speed may be changed.
     """
     missing = np.empty(WIDTH)
     for i in range(len(keys)):
@@ -112,7 +117,8 @@ def inertialise(
             keys[i, k, 1] += share * aside[i, 1]
         for d in range(WIDTH):
             foot = ANKLE <= d <= SWING_HEADING
-            if re_aimed[i] or not foot:
+            flies = from_air[i] and d <= SWING_PITCH
+            if re_aimed[i] or flies or not foot:
                 slope = speed[i, d] * ticks[i] / (KEYS - 1.0)
                 keys[i, 1, d] = 0.25 * (2.0 * slope + 3.0 * keys[i, 0, d] + keys[i, 2, d])
         for k in range(KEYS):
@@ -135,6 +141,7 @@ def _new_targets(count: int) -> Targets:
         np.empty((count, KEYS)),
         np.empty((count, KEYS, 2)),
         np.empty((count, KEYS, 2)),
+        np.empty(count),
         np.empty(count),
     )
 
@@ -183,8 +190,9 @@ def fill_step_keys(
     tables: GaitTables,
     keys: Floats,
     lift: Floats,
+    flight: Floats,
 ) -> None:
-    """Write the keys (N, KEYS, WIDTH) and the toe-offs (N,) of the rest of N steps.
+    """Write the keys (N, KEYS, WIDTH), toe-offs and flights (N,) of the rest of N steps.
 
     They begin with the current pose in value and speed. `elapsed` (N,), in [0, 1), is the share of
     each step that is over already, 0 for steps that begin; the steps take `ticks` (N,) from now on.
@@ -201,17 +209,18 @@ def fill_step_keys(
     _lift_early(footprints, share, tables, targets)
     fill_keys(targets, footprints, keys)
     aside = np.empty((count, 2))
-    re_aimed = np.empty(count, np.bool_)
+    re_aimed, from_air = np.empty(count, np.bool_), np.empty(count, np.bool_)
     for i in range(count):
         x = hips[i, 0] - footprints.standing[i, 0] - keys[i, KEYS - 1, 0]
         y = hips[i, 1] - footprints.standing[i, 1] - keys[i, KEYS - 1, 1]
         distance = max(math.hypot(x, y), 1e-9)
         within = min(distance, room_m[i]) / distance
         aside[i, 0], aside[i, 1] = x * within, y * within
-        re_aimed[i] = elapsed[i] > 0.0
+        re_aimed[i], from_air[i] = elapsed[i] > 0.0, targets.lift[i] <= 0.0
+        flight[i] = min(targets.flight[i] / (1.0 - elapsed[i]), MOST_FLOWN)
         left = (targets.lift[i] - elapsed[i]) / (1.0 - elapsed[i])
         lift[i] = min(max(left, 0.0), 1.0)
-    inertialise(keys, now.key, now.speed, re_aimed, ticks, aside)
+    inertialise(keys, now.key, now.speed, re_aimed, from_air, ticks, aside)
 
 
 @kernel

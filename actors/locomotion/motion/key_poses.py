@@ -63,6 +63,8 @@ class Steps(NamedTuple):
     lift: Floats
     """(N,): toe-off, the share of the step until which the swing foot's toe stays where key 0 has
     it."""
+    flight: Floats
+    """(N,): share of the step, at its end, in which the standing foot is in the air too."""
     keys: Floats
     """(N, KEYS, WIDTH): at even shares, the first at 0 and the last at 1."""
 
@@ -90,6 +92,7 @@ def no_steps(count: int) -> Steps:
         np.zeros(count, dtype=np.int64),
         np.zeros((count, 4)),
         np.zeros((count, 4)),
+        np.zeros(count),
         np.zeros(count),
         np.zeros((count, KEYS, WIDTH)),
     )

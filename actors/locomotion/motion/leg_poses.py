@@ -19,7 +19,8 @@ REACH: Final = kernels.REACH
 def leg_poses(steps: Steps, u: Floats, key: Floats, sizes: BodySizes) -> LegPoses:
     """Legs of N steps at shares of them.
 
-    A standing foot is on its heel while its toe is up, else on its toe. Where a leg is too short,
+    A standing foot is on its heel while its toe is up, else on its toe; in a flight it comes along
+    in the air. Where a leg is too short,
     a foot that is on its toe raises its heel; then the hips come down until both feet are in reach.
 
     Parameters
@@ -35,6 +36,14 @@ def leg_poses(steps: Steps, u: Floats, key: Floats, sizes: BodySizes) -> LegPose
     LegPoses of N bodies, metres and radians, world axes
     """
     poses = kernels.new_leg_poses(len(u))
-    given = Placement(steps.on_right, steps.standing, steps.landing, steps.lift, sizes.leg_m)
+    given = Placement(
+        steps.on_right,
+        steps.standing,
+        steps.landing,
+        steps.lift,
+        steps.flight,
+        steps.keys,
+        sizes.leg_m,
+    )
     kernels.fill_leg_poses(given, u, key, REACH, poses)
     return poses

@@ -3,7 +3,8 @@
 A pose with both feet on the ground follows from their two footprints alone. So one step ends as
 the next one begins, wherever the footprints lead: straight on, round a bend, sideways, backward,
 on the spot. Of the distance between the feet the part ahead is walked; the part to the side only
-shifts the hips. Lengths are shares of the leg's.
+shifts the hips. Where feet are too far apart to be both on the ground, the rear one is in the air:
+the body runs. Lengths are shares of the leg's.
 """
 
 from __future__ import annotations
@@ -15,6 +16,12 @@ import numpy as np
 
 from esplanade.actors.locomotion.body.skeleton import FOOT, TRACK_HALF_WIDTH
 from esplanade.actors.locomotion.gait.step_length import PoseTable
+from esplanade.actors.locomotion.planted._flight_kernels import (
+    LANDING_HEIGHT,
+    LANDS_AHEAD,
+    STRIKE,
+    flight_share,
+)
 from esplanade.actors.locomotion.planted._reach_kernels import excess_height
 from esplanade.actors.locomotion.planted._stairs_kernels import (
     ground_height,
@@ -65,6 +72,8 @@ class DoubleSupportPose(NamedTuple):
     """Height of the rear heel above its footprint, the toe on the ground."""
     strike: float
     """Pitch of the front foot at its heel strike, positive with the toe up."""
+    flight: float
+    """Share of the step to this pose that is flown; above 0 the rear foot is in the air."""
 
 
 @kernel
@@ -101,6 +110,26 @@ def double_support_pose(
     hip_height = -front_up - CROUCH
     height = ground + hip_height
 
+    flight = flight_share(ahead, front.z - rear.z)
+    if flight > 0.0:
+        shift = 0.5 * aside
+        return DoubleSupportPose(
+            rv,
+            pace,
+            front.x - LANDS_AHEAD * cos + shift * sin,
+            front.y - LANDS_AHEAD * sin - shift * cos,
+            ahead * cos - _PACE * shifted * sin,
+            ahead * sin + _PACE * shifted * cos,
+            yaw,
+            _PACE * (front.heading - rear.heading),
+            front.z,
+            0.0,
+            LANDING_HEIGHT,
+            0.0,
+            STRIKE,
+            flight,
+        )
+
     heel_forward = FOOT - math.sqrt(FOOT * FOOT - heel * heel)
     hip_x, hip_y = -side * TRACK_HALF_WIDTH * sin, side * TRACK_HALF_WIDTH * cos
     lowered = max(
@@ -128,6 +157,7 @@ def double_support_pose(
         hip_height,
         heel,
         strike * (1.0 - unevenness(front.z - rear.z)),
+        0.0,
     )
 
 

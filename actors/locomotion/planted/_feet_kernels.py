@@ -14,6 +14,12 @@ from esplanade.actors.locomotion.planted._double_support_kernels import (
     DoubleSupportPose,
     double_support_pose,
 )
+from esplanade.actors.locomotion.planted._flight_kernels import (
+    LAST_PITCH,
+    flown,
+    pushing_pitch,
+    towed,
+)
 from esplanade.actors.locomotion.planted._hips_kernels import Hips, hips_at, lift_of
 from esplanade.actors.locomotion.planted._reach_kernels import (
     FULL,
@@ -80,11 +86,17 @@ def standing_foot(
 ) -> Foot:
     """The standing foot: it rolls from its heel to the flat sole and rises on its toe.
 
-    Where the leg is too short, the heel rises more.
+    Where the leg is too short, the heel rises more. At the end of a step with a flight the toe
+    pushes off and comes along.
     """
     down = before.strike * (1.0 - smooth(u / 0.2))
     pitch = down - math.asin(after.heel * smooth((u - 0.55) / 0.45) / FOOT)
     here = Footprint(0.0, 0.0, 0.0, 0.0)
+    if after.flight > 0.0:
+        pitch = down - pushing_pitch(u, after.flight)
+        x, y, z = towed(after.x - before.x, after.y - before.y, after.flight)
+        over = flown(u, after.flight) ** 2
+        here = Footprint(over * x, over * y, over * z, 0.0)
     if pitch <= 0.0:
         pitch = mix(pitch, _reaching_pitch(hips, 1.0, here, pitch), smooth(u / _AT_ENDS))
     x, y, z = _ankle_over_toe(here, min(pitch, 0.0))
@@ -100,7 +112,9 @@ def _pinned_pitch(
     lift: float,
     by_curves: float,
 ) -> float:
-    """Pitch of the swing foot as if its toe stayed down."""
+    """Pitch of the swing foot as if its toe stayed where it was."""
+    if before.flight > 0.0:
+        return -LAST_PITCH
     pitch = mix(-math.asin(before.heel / FOOT), by_curves, smooth(u / lift))
     return _reaching_pitch(hips, -1.0, lifted, pitch)
 
@@ -156,8 +170,13 @@ def swing_foot(
 ) -> Foot:
     """The swing foot: on its toe until toe-off, then along the curves, then down on its footprint.
 
-    `lift` is the share of toe-off, `raise_by` the height added to the curves.
+    `lift` is the share of toe-off, `raise_by` the height added to the curves. After a flight the
+    foot comes from where it was in the air.
     """
+    ground = lifted.z
+    if before.flight > 0.0:
+        x, y, z = towed(-lifted.x, -lifted.y, before.flight)
+        lifted = Footprint(lifted.x + x, lifted.y + y, lifted.z + z, lifted.heading)
     hip, knee, ankle = swing_leg(hips.rv, u)
     pitch = _pinned_pitch(before, lifted, hips, u, lift, hip - knee + ankle)
     pinned_at = _ankle_over_toe(lifted, pitch)
@@ -165,13 +184,13 @@ def swing_foot(
     swung = max((u - lift) / (1.0 - lift), 0.0)
     if swung <= 0.0:
         return pinned
-    under = mix(lifted.z, landing.z, smooth(swung))
+    under = mix(ground, landing.z, smooth(swung))
     level = _level_swing(pinned, under, landing, after.strike, hips, u, lift)
     floor = under + FOOT * max(-math.sin(level.pitch), 0.0)
     height = max(level.z + raise_by * _bump(swung), floor)
 
-    top = max(lifted.z, landing.z, 0.0)
-    uneven = unevenness(top - min(lifted.z, landing.z, 0.0))
+    top = max(ground, landing.z, 0.0)
+    uneven = unevenness(top - min(ground, landing.z, 0.0))
     over = swing_over(pinned_at, landing, top, swung)
     x, y = mix(level.x, over[0], uneven), mix(level.y, over[1], uneven)
     z = mix(height, over[2], uneven)

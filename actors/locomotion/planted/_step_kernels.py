@@ -14,13 +14,19 @@ from esplanade.actors.locomotion.planted._feet_kernels import (
     standing_foot,
     swing_foot,
 )
-from esplanade.actors.locomotion.planted._hips_kernels import hips_at, lift_of
+from esplanade.actors.locomotion.planted._hips_kernels import hips_at, lift_of, running
 from esplanade.actors.locomotion.planted.footprints import HEADING, Footprint, StepFootprints
 from esplanade.actors.locomotion.planted.targets import Targets
 from esplanade.planning.compiled.arrays import Floats
 from esplanade.planning.compiled.jit import inlined, kernel
 
 _TURN = 2.0 * math.pi
+
+# Arms of runners beside those of walkers, radians.
+_BENT = 1.05
+"""Their elbows are bent by this more."""
+_SWUNG = 0.35
+"""Their shoulders swing by this more, to and fro."""
 
 
 class GaitTables(NamedTuple):
@@ -46,7 +52,7 @@ def fill_targets(
         after = double_support_pose(here, landing, -1.0, table)
         lift = lift_of(before, after)
         raise_by = clearance(before, after, lifted, landing, clearances)
-        out.lift[i] = lift
+        out.lift[i], out.flight[i] = lift, after.flight
         for k in range(u.shape[1]):
             hips = hips_at(before, after, u[i, k])
             standing = standing_foot(before, after, hips, u[i, k])
@@ -62,8 +68,11 @@ def fill_targets(
             out.swing_heading[i, k] = origin[HEADING] + mirror * turned
             out.torsion[i, k] = mirror * chest_torsion(pace, u[i, k])
             near, far = (1, 0) if footprints.on_right[i] else (0, 1)
-            out.shoulders[i, k, near], out.elbows[i, k, near] = arm(pace, 0.5 * u[i, k])
-            out.shoulders[i, k, far], out.elbows[i, k, far] = arm(pace, 0.5 + 0.5 * u[i, k])
+            runs = running(before, after, u[i, k])
+            for side, phase in ((near, 0.5 * u[i, k]), (far, 0.5 + 0.5 * u[i, k])):
+                shoulder, elbow = arm(pace, phase)
+                out.shoulders[i, k, side] = shoulder - _SWUNG * runs * math.cos(_TURN * phase)
+                out.elbows[i, k, side] = elbow + _BENT * runs
 
 
 @inlined

@@ -34,6 +34,8 @@ class Targets(NamedTuple):
     """(N, K, 2): flexion left, right."""
     lift: Floats
     """(N,): toe-off, the share of the step until which the swing foot's toe stays where it was."""
+    flight: Floats
+    """(N,): share of the step, at its end, in which the standing foot is in the air too."""
 
 
 def empty_targets(count: int, shares: int) -> Targets:
@@ -52,4 +54,5 @@ def empty_targets(count: int, shares: int) -> Targets:
         shoulders=np.empty((*flat, 2)),
         elbows=np.empty((*flat, 2)),
         lift=np.empty(count),
+        flight=np.empty(count),
     )

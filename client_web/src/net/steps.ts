@@ -27,6 +27,8 @@ export interface StepRecord {
   landing: Footprint;
   /** Share of the duration until which the swing foot's toe stays where key 0 has it. */
   lift: number;
+  /** Share of the duration, at its end, in which the standing foot is in the air: the body runs. */
+  flight: number;
   /** A row of `KEY_NUMBERS` for each key; `KeyNumber` says where each number is. */
   keys: Float64Array;
 }
@@ -57,6 +59,9 @@ const RECORD_HEAD_BYTES = 3;
 const WALKING = 1;
 const STEP_BYTES = 140;
 const RE_AIMED = 2;
+/** The flags above the lowest bits are the share that is flown. */
+const FLIGHT_SHIFT = 2;
+const FLIGHT = 1 / 128;
 const FOOTPRINT_M = 1e-4;
 const FOOTPRINT_RAD = (2 * Math.PI) / 65536;
 const KEY_M = 1e-4;
@@ -108,6 +113,7 @@ function walkingStep(view: DataView, at: number): StepRecord {
     tick: view.getUint32(at + 8, true),
     ticks: view.getUint8(at + 12),
     lift: view.getUint8(at + 13) / 255,
+    flight: (flags >> FLIGHT_SHIFT) * FLIGHT,
     standing: footprint(standing, view.getUint16(at + 26, true)),
     landing: footprint(landing, view.getUint16(at + 34, true)),
     keys: keys(wholeKeys(view, at, (flags & RE_AIMED) !== 0)),

@@ -2,7 +2,7 @@
  * The posture of a body in the midst of a step: the twin of `actors/locomotion/motion/key_poses.py`.
  *
  * The standing foot follows from its footprint and its pitch alone, so it cannot slide at any frame
- * rate; all else goes along curves through the keys of the step.
+ * rate, until a runner's foot pushes off and comes along; all else goes along curves through the keys of the step.
  */
 
 import { type Quaternion, Vector3 } from "three";
@@ -15,6 +15,9 @@ import { type Build, FOOT } from "./skeleton";
 const SETTLE = 0.1;
 /** A standing foot whose toe is down by this angle rises on its toe if the leg is too short. */
 const EASE_RAD = 0.1;
+/** Share of the way of the hips in flight that the toe behind comes along, and rises of that. */
+const TOWED = 0.5;
+const TOWED_UP = 0.45;
 const LANDING = [
   KeyNumber.ANKLE,
   KeyNumber.ANKLE + 1,
@@ -61,7 +64,9 @@ export function underWay(step: Step, u: number, build: Build, out: Posture): voi
   out.rightArm.shoulder = number(key, at.ARMS + 1);
   out.leftArm.elbow = number(key, at.ARMS + 2);
   out.rightArm.elbow = number(key, at.ARMS + 3);
-  stand(step, build, rightStands ? out.right : out.left);
+  const stands = rightStands ? out.right : out.left;
+  stand(step, build, stands);
+  tow(step, share, stands);
   const swing = rightStands ? out.left : out.right;
   swing.pitch = number(key, at.SWING_PITCH);
   swing.heading = landing.heading + number(key, at.SWING_HEADING);
@@ -86,6 +91,18 @@ function stand({ standing }: Step, { legM }: Build, foot: FootPosture): void {
   heelFromToe(Math.min(foot.pitch, 0), heading, FOOT * legM, offset);
   heelFromToe(0, heading, FOOT * legM, level);
   foot.heel.addVectors(standing, offset).sub(level);
+}
+
+/** In a flight the foot behind comes along, its way growing with the square of the time. */
+function tow({ keys, flight }: Step, share: number, foot: FootPosture): void {
+  if (flight <= 0 || share <= 1 - flight) return;
+  const last = (STEP_KEYS - 1) * KEY_NUMBERS;
+  const x = number(keys, last) - number(keys, 0);
+  const y = number(keys, last + 1) - number(keys, 1);
+  const part = flight * ((share - 1 + flight) / flight) ** 2;
+  foot.heel.x += TOWED * part * x;
+  foot.heel.y += TOWED * part * y;
+  foot.heel.z += TOWED_UP * part * Math.hypot(x, y);
 }
 
 /** Until it lifts the swing foot turns on its toe; then what is missing to its curve fades. */

@@ -26,6 +26,7 @@ describe("unpackSteps", () => {
       const { id, rightStands, continues, tick, ticks } = known;
       expect(record).toMatchObject({ id, rightStands, continues, tick, ticks });
       expect(record?.lift).toBeCloseTo(known.lift, 12);
+      expect(record?.flight).toBe(known.flight);
       for (const foot of ["standing", "landing"] as const) {
         for (const name of ["x", "y", "z", "heading"] as const) {
           expect(record?.[foot][name], `${foot} ${name}`).toBeCloseTo(known[foot][name], 9);

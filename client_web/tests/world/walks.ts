@@ -24,7 +24,7 @@ export function stepAlong(index: number, change: Partial<StepRecord> = {}): Step
     keys.set([2 * (u - 1) * STEP_M, 0, 0.1 * Math.sin(Math.PI * u)], row + KeyNumber.ANKLE);
   }
   const record = { id: 1, rightStands, continues: false, tick: 0, ticks: 10, standing, landing };
-  return { ...record, lift: 0, keys, ...change };
+  return { ...record, lift: 0, flight: 0, keys, ...change };
 }
 
 /** The pose in snapshots at a time after the walk began. */

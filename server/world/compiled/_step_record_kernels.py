@@ -47,6 +47,9 @@ class Layout(NamedTuple):
 
     stands_on_right: int
     re_aimed: int
+    flight_shift: int
+    most_flight: int
+    flight: float
     most_ticks: int
     footprint_m: float
     footprint_rad: float
@@ -117,6 +120,8 @@ def write_records(
         record.flags = layout.stands_on_right * steps.on_right[i] + (
             layout.re_aimed * steps.re_aimed[i]
         )
+        flown = int(np.rint(max(steps.flight[i], 0.0) / layout.flight))
+        record.flags |= min(flown, layout.most_flight) << layout.flight_shift
         record.tick = steps.start[i] & 0xFFFF_FFFF
         record.ticks = min(max(steps.ticks[i], 0), layout.most_ticks)
         record.lift = int(np.rint(min(max(steps.lift[i], 0.0), 1.0) * 0xFF))
@@ -203,6 +208,7 @@ def read_records(
         out.re_aimed[i] = record.flags & layout.re_aimed != 0
         out.start[i], out.ticks[i] = record.tick, record.ticks
         out.lift[i] = record.lift / 0xFF
+        out.flight[i] = (record.flags >> layout.flight_shift) * layout.flight
         for d in range(3):
             stands = int(record.standing.position[d])
             out.standing[i, d] = stands * layout.footprint_m

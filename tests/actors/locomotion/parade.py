@@ -185,6 +185,8 @@ def _slide(steps: Steps, share: Floats, body: Pose, stood: Floats, sizes: BodySi
     out = np.full((len(share), 2), np.nan)
     on_heel = body.pitches[rows, right] > 0.0
     out[rows, right] = np.where(on_heel, off_heel[rows, right], off_toe[rows, right])
+    flying = (steps.flight > 0.0) & (share > 1.0 - steps.flight)
+    out[rows[flying], right[flying]] = np.nan
     pinned = share < steps.lift
     out[rows[pinned], 1 - right[pinned]] = off_toe[rows[pinned], 1 - right[pinned]]
     return out

@@ -78,7 +78,7 @@ def _pose(steps: motion.Steps, sizes: BodySizes, row: int, share: float) -> dict
 
 
 def sample_steps() -> tuple[motion.Steps, BodySizes]:
-    """Steps of every kind: along, aside, back, up and down, with knees at their limit, standing."""
+    """Steps of every kind: along, aside, back, up, down, flown, with bent knees, standing."""
     random = np.random.default_rng(3)
     count = 12
     steps = motion.no_steps(count)
@@ -91,6 +91,7 @@ def sample_steps() -> tuple[motion.Steps, BodySizes]:
     steps.ticks[:] = random.integers(5, 20, count)
     steps.ticks[-1] = 0
     steps.lift[:] = np.where(np.arange(count) % 3 == 0, 0.0, random.uniform(0.05, 0.4, count))
+    steps.flight[:] = np.where(np.arange(count) % 4 == 2, 0.3, 0.0)
     steps.standing[:, :3] = random.uniform(-40.0, 40.0, (count, 3))
     steps.standing[:, 3] = heading
     side = np.where(steps.on_right, 1.0, -1.0)

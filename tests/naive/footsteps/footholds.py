@@ -7,9 +7,9 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from esplanade.actors.locomotion.body.skeleton import FOOT, TRACK_HALF_WIDTH
+from esplanade.actors.locomotion.gait.curves import smooth
 from esplanade.actors.locomotion.gait.step_length import (
     RV_LONGEST,
-    longest_step,
     planted_length,
     straight_double_support,
 )
@@ -22,8 +22,10 @@ from tests.naive.footsteps.limits import (
     clamped_distance,
     clamped_foot,
     distance_and_limit,
+    longest_step,
 )
 from tests.naive.headings import forward_and_left, wrap_angle
+from tests.naive.planted.flight import LANDS_AHEAD, SHORTEST_RUN
 
 # Limits of the height up or down to which a foot is put.
 _TREAD_M: Final = 0.26
@@ -101,7 +103,9 @@ def choose_footholds(
     turn = side * wrap_angle(desired - standing[:, HEADING])
     heading = standing[:, HEADING] + side * np.clip(turn, -_CLOSING_RAD, _OPENING_RAD)
 
-    _, limit = distance_and_limit(there[:, :2], standing)
+    legs_a_second = np.hypot(velocity[:, 0], velocity[:, 1]) / leg_m
+    longest = longest_step(legs_a_second)
+    _, limit = distance_and_limit(there[:, :2], standing, legs_a_second)
     hips = clamped_distance(there[:, :2], standing[:, ON_MAP], 1.1 * limit * leg_m)
     forward, left = forward_and_left(heading)
     ahead_mps = np.einsum("nd,nd->n", velocity, forward)
@@ -120,7 +124,7 @@ def choose_footholds(
     landing = np.empty((len(leg_m), 4))
     landing[:, Z], landing[:, HEADING] = there[:, 2], heading
     landing[:, ON_MAP] = hips + ahead[:, None] * forward + aside[:, None] * left
-    landing[:, ON_MAP] = clamped_foot(landing[:, ON_MAP], standing, middle, side, leg_m)
+    landing[:, ON_MAP] = clamped_foot(landing[:, ON_MAP], standing, middle, side, longest, leg_m)
     landing, found = ground.settle(landing, foot_m)
     hasty = np.hypot(velocity[:, 0], velocity[:, 1]) > _HASTY_MPS
     climb_m = np.where(hasty, _TWO_TREADS_M, _TREAD_M)
@@ -131,7 +135,7 @@ def choose_footholds(
         halfway, beside = 0.5 * (landing[:, PLACE] + under), standing[:, PLACE].copy()
         partway = 0.5 * (standing[:, PLACE] + under)
         for places in (halfway, under, partway, beside):
-            places[:, :2] = clamped_foot(places[:, :2], standing, middle, side, leg_m)
+            places[:, :2] = clamped_foot(places[:, :2], standing, middle, side, longest, leg_m)
         for places, limit_m in (
             (halfway, climb_m),
             (under, climb_m),
@@ -177,4 +181,7 @@ _LENGTHS: Final = planted_length(_POSES)
 
 def _heel_ahead_of_hips(length: Floats) -> Floats:
     """Distances, leg lengths (N,), ahead of the hips where heels of steps of lengths (N,) land."""
-    return np.interp(np.minimum(length, longest_step()), _LENGTHS, _POSES.front_forward)
+    last = _LENGTHS[-1]
+    walked = np.interp(np.minimum(length, last), _LENGTHS, _POSES.front_forward)
+    runs = smooth((length - last) / (SHORTEST_RUN + 0.07 - last))
+    return np.asarray(walked + (LANDS_AHEAD - walked) * runs)

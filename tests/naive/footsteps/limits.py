@@ -19,6 +19,9 @@ PAST_TOE: Final = 0.1
 BEHIND_LANDING: Final = 0.54
 """A step leaves the body no further from the landing foot."""
 
+LONGEST_WALK: Final = 0.68
+"""Longest step that is walked."""
+
 _FURTHEST_AHEAD: Final = 0.86
 _FURTHEST_BACK: Final = 0.55
 _FURTHEST_ASIDE: Final = 0.55
@@ -26,13 +29,22 @@ _NEAREST_ASIDE: Final = 1.1 * TRACK_HALF_WIDTH
 """A swing foot keeps this far to its own side of the standing foot as it passes."""
 
 
-def distance_and_limit(places: Floats, standing: Floats) -> tuple[Floats, Floats]:
+def longest_step(legs_a_second: Floats) -> Floats:
+    """Longest steps at speeds, leg lengths: from that of a walk to that of a run."""
+    faster = np.clip((legs_a_second - 2.2) / (2.9 - 2.2), 0.0, 1.0)
+    return np.asarray(LONGEST_WALK + (1.15 - LONGEST_WALK) * faster)
+
+
+def distance_and_limit(
+    places: Floats, standing: Floats, legs_a_second: Floats
+) -> tuple[Floats, Floats]:
     """Distances of bodies from their standing feet, and how large they may be.
 
     Parameters
     ----------
     places : float64 (N, 2), metres
     standing : float64 (N, 4), footprints
+    legs_a_second : float64 (N,), speeds
 
     Returns
     -------
@@ -42,11 +54,17 @@ def distance_and_limit(places: Floats, standing: Floats) -> tuple[Floats, Floats
     distance = np.hypot(apart[:, 0], apart[:, 1])
     toe = forward_and_left(standing[:, HEADING])[0]
     ahead = np.einsum("nd,nd->n", apart, toe) / np.maximum(distance, 1e-9)
-    return distance, PAST_STANDING + PAST_TOE * np.maximum(ahead, 0.0)
+    more = PAST_TOE + longest_step(legs_a_second) - LONGEST_WALK
+    return distance, PAST_STANDING + more * np.maximum(ahead, 0.0)
 
 
 def clamped_foot(
-    points: Floats, standing: Floats, middle: Floats, side: Floats, leg_m: Floats
+    points: Floats,
+    standing: Floats,
+    middle: Floats,
+    side: Floats,
+    longest: Floats,
+    leg_m: Floats,
 ) -> Floats:
     """The nearest places for swing feet that are on their own side and within reach.
 
@@ -58,6 +76,7 @@ def clamped_foot(
         Headings midway between both feet.
     side : float64 (N,)
         1 where the swing foot is the left one, else -1.
+    longest : float64 (N,), longest steps, leg lengths
     leg_m : float64 (N,), metres
 
     Returns
@@ -66,9 +85,8 @@ def clamped_foot(
     """
     forward, left = forward_and_left(middle)
     apart = points - standing[:, ON_MAP]
-    ahead = np.clip(
-        np.einsum("nd,nd->n", apart, forward), -_FURTHEST_BACK * leg_m, _FURTHEST_AHEAD * leg_m
-    )
+    furthest = (_FURTHEST_AHEAD + longest - LONGEST_WALK) * leg_m
+    ahead = np.clip(np.einsum("nd,nd->n", apart, forward), -_FURTHEST_BACK * leg_m, furthest)
     aside = np.clip(
         side * np.einsum("nd,nd->n", apart, left),
         _NEAREST_ASIDE * leg_m,

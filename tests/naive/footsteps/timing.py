@@ -10,7 +10,7 @@ from esplanade.actors.locomotion.gait.durations import step_duration_s
 from esplanade.actors.locomotion.planted.footprints import Z
 from esplanade.planning.compiled.arrays import Floats
 from tests.naive.footsteps.course import AHEAD_S, WALKING_MPS, Course
-from tests.naive.footsteps.limits import distance_and_limit
+from tests.naive.footsteps.limits import distance_and_limit, longest_step
 
 CLOSING_S: Final = 0.5
 """Duration of a step that goes nowhere: a foot is drawn up to the other, or the body turns."""
@@ -21,8 +21,6 @@ SHORTEST_REST_S: Final = 0.2
 """Shortest rest of a step under way that has to end elsewhere."""
 LONGEST_S: Final = 0.8
 
-_LONGEST: Final = 0.68
-"""Longest step that is walked, leg lengths: a body that is faster takes it in less time."""
 _RISE_M: Final = 0.15
 """Stairs are walked tread by tread: a step that would climb more than this is shortened,"""
 _HURRY: Final = 2.5
@@ -53,7 +51,8 @@ def durations_s(course: Course, standing: Floats, leg_m: Floats, cadence_factor:
     velocity = course.velocity(np.full(len(leg_m), 2.0 * AHEAD_S))
     legs_a_second = np.maximum(np.hypot(velocity[:, 0], velocity[:, 1]) / leg_m, 1e-9)
     natural = np.sqrt(step_duration_s(np.full_like(leg_m, 0.6)) * 0.6 * legs_a_second)
-    seconds = np.minimum(natural, _LONGEST) / legs_a_second / cadence_factor
+    length = np.minimum(natural, longest_step(legs_a_second))
+    seconds = length / legs_a_second / cadence_factor
     standing_still = legs_a_second * leg_m < 0.5 * WALKING_MPS
     seconds = np.where(standing_still, CLOSING_S, np.minimum(seconds, LONGEST_S))
     rise = np.abs(course.at(seconds)[:, 2] - standing[:, Z])
@@ -76,8 +75,8 @@ def within_reach_s(course: Course, standing: Floats, leg_m: Floats, seconds: Flo
     float64 (N,), seconds, SHORTEST_REST_S or more
     """
     place = course.at(seconds)
-    distance, limit = distance_and_limit(place[:, :2], standing)
     speed = np.maximum(np.hypot(*course.velocity(seconds).T), 0.1)
+    distance, limit = distance_and_limit(place[:, :2], standing, speed / leg_m)
     seconds = seconds - np.maximum(distance - limit * leg_m, 0.0) / speed
     rise = np.abs(place[:, 2] - course.ahead[:, 0, 2])
     steep = np.maximum(rise / _RISE_M, 1.0)

@@ -80,7 +80,11 @@ def current_pose(
     now[:, SWING_PITCH] = legs.pitches[rows, swing]
     now[:, STANDING_PITCH] = legs.pitches[rows, 1 - swing]
     now[:, SWING_HEADING] = wrap_angle(legs.headings[rows, swing] - footprints.landing[:, HEADING])
-    speed[swapped, ANKLE] = 0.0
+    earlier = leg_poses(old, before, sample_keys(old, before, sizes.foot_m), sizes)
+    moved = legs.ankles[rows, swing] - earlier.ankles[rows, swing]
+    flies = moving & (old.flight > 0.0)
+    moved /= np.where(flies, passed, np.inf)[:, None]
+    speed[swapped, ANKLE] = moved[swapped]
     speed[swapped, SWING_HEADING] = 0.0
     speed[swapped, SWING_PITCH], speed[swapped, STANDING_PITCH] = (
         speed[swapped, STANDING_PITCH],
@@ -96,7 +100,7 @@ def step_keys(
     ticks: Ints,
     hips: Floats,
     room_m: Floats,
-) -> tuple[Floats, Floats]:
+) -> tuple[Floats, Floats, Floats]:
     """Keys of what is left of N steps, which begin with the current pose in value and speed.
 
     Parameters
@@ -114,16 +118,17 @@ def step_keys(
 
     Returns
     -------
-    float64 (N, KEYS, WIDTH) keys and float64 (N,) toe-offs, as in `Steps`
+    float64 (N, KEYS, WIDTH) keys, and float64 (N,) toe-offs and flights, as in `Steps`
     """
     targets = _targets(footprints, elapsed[:, None] + (1.0 - elapsed[:, None]) * _SHARES)
     keys = _keys(targets, footprints)
     aside = hips - footprints.standing[:, ON_MAP] - keys[:, -1, ROOT_ON_MAP]
     distance = np.maximum(np.hypot(aside[:, 0], aside[:, 1]), 1e-9)
     aside *= (np.minimum(distance, room_m) / distance)[:, None]
-    inertialise(keys, now.key, now.speed, elapsed > 0.0, ticks, aside)
+    from_air = targets.lift <= 0.0
+    inertialise(keys, now.key, now.speed, elapsed > 0.0, from_air, ticks, aside)
     lift = np.clip((targets.lift - elapsed) / (1.0 - elapsed), 0.0, 1.0)
-    return keys, lift
+    return keys, lift, np.minimum(targets.flight / (1.0 - elapsed), 63.0 / 128.0)
 
 
 def standing_keys(footprints: StepFootprints) -> Floats:

@@ -146,7 +146,7 @@ def steps_to_re_aim(
     goals, course : of the walkers
     """
     share = steps.share(tick)
-    rows = np.flatnonzero((share > 0.0) & (share < _LAST))
+    rows = np.flatnonzero((share > 0.0) & (share < _LAST) & (share < 1.0 - steps.flight))
     course = course.take(rows)
     left_s = np.asarray((steps.start[rows] + steps.ticks[rows] - tick) * tick_s)
     velocity = course.velocity(left_s)

@@ -172,13 +172,13 @@ class Walkers:
         )
         footprints = StepFootprints(on_right, lifted, standing, chosen.landing, sizes.leg_m)
         now = current_pose(last, tick, footprints, triggered.swapped, sizes)
-        keys, lift = step_keys(
+        keys, lift, flight = step_keys(
             footprints, elapsed, now, triggered.ticks, chosen.hips, _ROOM * sizes.leg_m
         )
         # A foot that is in the air already does not come down again before it lands.
         left = np.maximum(last.lift - share, 0.0) / (1.0 - share)
         lift = np.where(triggered.re_aimed, left, lift)
-        self._go(slots, footprints, tick, triggered.ticks, keys, lift, triggered.re_aimed)
+        self._go(slots, footprints, tick, triggered.ticks, keys, lift, flight, triggered.re_aimed)
         self._elapsed[slots] = elapsed
         self._goals.body[slots], self._goals.velocity[slots] = chosen.body, chosen.velocity
         self._goals.heading[slots], self._goals.whole_s[slots] = chosen.heading, triggered.whole_s
@@ -189,7 +189,8 @@ class Walkers:
         """Go over to standing on two footprints."""
         count = len(slots)
         takes = np.full(count, ticks)
-        self._go(slots, footprints, tick, takes, keys, np.zeros(count), np.zeros(count, np.bool_))
+        none, never = np.zeros(count), np.zeros(count, np.bool_)
+        self._go(slots, footprints, tick, takes, keys, none, none, never)
         self._elapsed[slots] = 0.0
         self._goals.velocity[slots] = 0.0
         self._goals.heading[slots] = footprints.standing[:, HEADING]
@@ -203,6 +204,7 @@ class Walkers:
         ticks: Ints,
         keys: Floats,
         lift: Floats,
+        flight: Floats,
         re_aimed: Bools,
     ) -> None:
         """Begin steps: they are published, and kept as everyone gets them."""
@@ -214,6 +216,7 @@ class Walkers:
             footprints.standing,
             footprints.landing,
             lift,
+            flight,
             keys,
         )
         if ticks.all():

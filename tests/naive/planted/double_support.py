@@ -17,7 +17,7 @@ from esplanade.actors.locomotion.gait.step_length import (
     pose_table,
 )
 from esplanade.planning.compiled.arrays import Floats
-from tests.naive.planted import stairs
+from tests.naive.planted import flight, stairs
 from tests.naive.planted.reach import hip_ceiling
 
 CROUCH = 0.007
@@ -57,6 +57,8 @@ class DoubleSupportPose(NamedTuple):
     """Height of the rear heel above its footprint, the toe on the ground."""
     strike: Floats
     """Pitch of the front foot at its heel strike, radians, positive with the toe up."""
+    flight: Floats
+    """Share of the step to this pose that is flown; above 0 the rear foot is in the air."""
 
 
 def pose_of_length(length: Floats) -> tuple[Floats, StraightDoubleSupport]:
@@ -110,18 +112,22 @@ def double_support_pose(rear: Floats, front: Floats, side: Floats) -> DoubleSupp
         np.concatenate([place, (ground + hip_height)[..., None]], axis=-1), rear, front, heel, side
     )
     even = 1.0 - stairs.unevenness(front[..., 2] - rear[..., 2])
+    flown = flight.flight_share(ahead, front[..., 2] - rear[..., 2])
+    runs = flown > 0.0
+    landing = front[..., :2] - flight.LANDS_AHEAD * forward - 0.5 * aside[..., None] * left
     return DoubleSupportPose(
         both[0],
         both[1],
-        place,
-        speed[..., None] * forward + (_PACE * shifted)[..., None] * left,
+        np.where(runs[..., None], landing, place),
+        np.where(runs, ahead, speed)[..., None] * forward + (_PACE * shifted)[..., None] * left,
         yaw,
         _PACE * (front[..., 3] - rear[..., 3]),
-        ground,
-        lowered,
-        hip_height,
-        heel,
-        np.maximum(pose.front_pitch, 0.0) * even,
+        np.where(runs, front[..., 2], ground),
+        np.where(runs, 0.0, lowered),
+        np.where(runs, flight.LANDING_HEIGHT, hip_height),
+        np.where(runs, 0.0, heel),
+        np.where(runs, flight.STRIKE, np.maximum(pose.front_pitch, 0.0) * even),
+        flown,
     )
 
 

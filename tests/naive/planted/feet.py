@@ -16,6 +16,7 @@ from tests.naive.planted.double_support import (
     double_support_pose,
     forward_and_left,
 )
+from tests.naive.planted.flight import LAST_PITCH, flown, pushing_pitch, towed
 from tests.naive.planted.hips import Hips, hips_at, mix
 from tests.naive.planted.reach import FULL, drawn_to_hip, hip_ceiling, raised_heel
 
@@ -45,10 +46,13 @@ def standing_foot(
     """
     down = before.strike * (1.0 - smooth(u / 0.2))
     up = np.arcsin(after.heel * smooth((u - 0.55) / 0.45) / FOOT)
-    pitch = down - up
+    flight = np.broadcast_to(after.flight, u.shape)
+    pitch = down - np.where(flight > 0.0, pushing_pitch(u, flight), up)
     footprint = np.zeros((*u.shape, 4))
-    toe = np.zeros((*u.shape, 3))
-    toe[..., 0] = FOOT
+    way = towed(after.place - before.place, after.flight)
+    footprint[..., :3] = flown(u, flight)[..., None] ** 2 * way
+    toe = footprint[..., :3].copy()
+    toe[..., 0] += FOOT
     raised = raised_heel(hips.root + hips.joint, toe, footprint[..., 3], pitch)
     pitch = np.where(pitch > 0.0, pitch, mix(pitch, raised, smooth(u / _AT_ENDS)))
     return Foot(ankle_over_toe(footprint, np.minimum(pitch, 0.0)), pitch, footprint[..., 3])
@@ -68,14 +72,19 @@ def swing_foot(
     lifted and landing are footprints (N, 1, 4); raise_by (N, 1) comes from `clearance`.
     """
     swung = _swung(hips, u)
+    ground = lifted[..., 2]
+    flight = before.flight[..., None]
+    way = towed(-lifted[..., :2], before.flight)
+    way = np.concatenate([way, np.zeros_like(flight)], axis=-1)
+    lifted = np.where(flight > 0.0, lifted + way, lifted)
     pinned, angles = _pinned_foot(before, lifted, hips, u)
-    under = mix(lifted[..., 2], landing[..., 2], smooth(swung))
+    under = mix(ground, landing[..., 2], smooth(swung))
     level = _level_swing(after, pinned, angles, under, landing, hips, u)
     height = level.ankle[..., 2] + raise_by * _bump(swung)
     level.ankle[..., 2] = np.maximum(height, under + _needed(level.pitch))
 
-    top = np.maximum(np.maximum(lifted[..., 2], landing[..., 2]), 0.0)
-    bottom = np.minimum(np.minimum(lifted[..., 2], landing[..., 2]), 0.0)
+    top = np.maximum(np.maximum(ground, landing[..., 2]), 0.0)
+    bottom = np.minimum(np.minimum(ground, landing[..., 2]), 0.0)
     uneven = stairs.unevenness(top - bottom)
     over = stairs.swing_over(pinned.ankle, landing[..., :3], top, swung)
     ankle = mix(level.ankle, over, uneven[..., None])
@@ -142,11 +151,13 @@ def _pinned_foot(
 ) -> tuple[Foot, Floats]:
     """The swing foot as if its toe stayed down, and angles (N, K, 3) of its leg by the curves."""
     angles = joint_angles(hips.rv, 0.5 + 0.5 * u)
-    pitch = mix(-np.arcsin(before.heel / FOOT), foot_pitch(angles), smooth(u / hips.lift))
+    to_lift = u / np.where(hips.lift > 0.0, hips.lift, 1.0)
+    pitch = mix(-np.arcsin(before.heel / FOOT), foot_pitch(angles), smooth(to_lift))
     footprint = np.broadcast_to(lifted, (*u.shape, 4))
     toe = footprint[..., :3].copy()
     toe[..., :2] += FOOT * forward_and_left(footprint[..., 3])[0]
     pitch = raised_heel(hips.root - hips.joint, toe, footprint[..., 3], pitch)
+    pitch = np.where(before.flight > 0.0, -LAST_PITCH, pitch)
     return Foot(ankle_over_toe(footprint, pitch), pitch, footprint[..., 3]), angles
 
 

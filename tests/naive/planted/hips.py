@@ -18,6 +18,7 @@ from tests.naive.planted.double_support import (
     forward_and_left,
     hips_under_way,
 )
+from tests.naive.planted.flight import running_height
 
 _CREST = 0.35
 """Share of a step from the trough of the hips' wave, as Boulic's pelvis has it."""
@@ -45,7 +46,9 @@ class Hips(NamedTuple):
     rv: Floats
     pace: Floats
     lift: Floats
-    """(N, 1): share of the step after which the other foot leaves the ground."""
+    """(N, 1): share of the step after which the other foot leaves the ground; 0 after a flight."""
+    runs: Floats
+    """(N, K): weight of running against walking."""
 
 
 def mix(before: Floats, after: Floats, share: Floats) -> Floats:
@@ -62,22 +65,29 @@ def hips_at(before: DoubleSupportPose, after: DoubleSupportPose, u: Floats) -> H
     motion = pelvis_motion(rv, 0.5 * u)
     _, left = forward_and_left(heading)
     level = unswayed + motion.left[..., None] * left
-    height = _height(before, after, u)
+    runs = mix(1.0 * (before.flight > 0.0), 1.0 * (after.flight > 0.0), s)
+    height = mix(_height(before, after, u), running_height(u), runs)
+    lean = motion.lean + 0.07 * runs
     ground = stairs.ground_during_step(before.ground, after.ground, u)
     lowered = mix(before.lowered, after.lowered, s)
     yaw = heading + motion.yaw
     return Hips(
         root=np.concatenate([level, (ground + height - lowered)[..., None]], axis=-1),
         yaw=yaw,
-        lean=motion.lean,
+        lean=lean,
         roll=motion.roll,
-        joint=_joint(yaw, motion.lean, motion.roll),
+        joint=_joint(yaw, lean, motion.roll),
         unswayed=unswayed,
         heading=heading,
         height=height,
         rv=rv,
         pace=mix(before.pace, after.pace, s),
-        lift=_lift(0.5 * (before.rv + after.rv), 0.5 * (before.pace + after.pace)),
+        lift=np.where(
+            before.flight > 0.0,
+            0.0,
+            _lift(0.5 * (before.rv + after.rv), 0.5 * (before.pace + after.pace)),
+        ),
+        runs=runs,
     )
 
 

@@ -32,6 +32,7 @@ def step_targets(footprints: StepFootprints, u: Floats) -> Targets:
     swing = swing_foot(
         before, after, lifted, landing, hips, u, clearance(before, after, lifted, landing)
     )
+    swing_of_arms = 0.35 * hips.runs * np.cos(np.pi * u)
     near, far = upper_angles(hips.pace, 0.5 * u), upper_angles(hips.pace, 0.5 + 0.5 * u)
     found = Targets(
         root=lowered_to(hips, standing, swing),
@@ -43,9 +44,10 @@ def step_targets(footprints: StepFootprints, u: Floats) -> Targets:
         swing_heading=swing.heading,
         standing_pitch=standing.pitch,
         torsion=near.torsion,
-        shoulders=np.stack([near.shoulder, far.shoulder], axis=-1),
-        elbows=np.stack([near.elbow, far.elbow], axis=-1),
+        shoulders=np.stack([near.shoulder - swing_of_arms, far.shoulder + swing_of_arms], axis=-1),
+        elbows=np.stack([near.elbow, far.elbow], axis=-1) + 1.05 * hips.runs[..., None],
         lift=hips.lift[:, 0],
+        flight=after.flight[:, 0],
     )
     return _into_world(found, footprints)
 

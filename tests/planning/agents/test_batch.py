@@ -42,6 +42,7 @@ BODY = {
     "wall_weight": 0.3,
     "hurry_weight": 2.0,
     "catch_up": 0.0,
+    "stride": 1.0,
     "hysteresis_s": 0.15,
     "keep_right_weight": 0.8,
     "max_expansions": float(scaled(150, 30)),

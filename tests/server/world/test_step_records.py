@@ -40,6 +40,7 @@ def as_motion(steps: wire.Steps) -> Steps:
         standing,
         landing,
         steps.lifts,
+        steps.flights,
         keys,
     )
 
@@ -56,6 +57,7 @@ def as_wire(steps: Steps, ids: NDArray[np.int64]) -> wire.Steps:
         wire.Footprints(standing[:, :3], standing[:, 3]),
         wire.Footprints(landing[:, :3], landing[:, 3]),
         steps.lift,
+        steps.flight,
         wire.Keys(
             steps.keys[..., motion.ROOT] + standing[:, None, :3],
             steps.keys[..., motion.PELVIS],

@@ -258,3 +258,32 @@ def test_a_step_over_stands_in_its_last_pose() -> None:
     assert steps.share(9).tolist() == [0.0, 1.0]
     assert steps.share(12).tolist() == [0.5, 1.0]
     assert steps.share(20).tolist() == [1.0, 1.0]
+
+
+def test_a_stride_makes_steps_shorter_or_longer_at_the_same_speed() -> None:
+    trial = Trial(scene=FIELD)
+    ids = trial.join((50.0, 50.0), (50.0, 55.0), (50.0, 60.0))
+    state, steps = trial.world.state, trial.world.steps
+    slots = state.slots_of(ids)
+    state.strides[slots] = 0.6, 1.0, 1.2
+    trial.tick(*(Steer(each, 1, 0.0, 1.2) for each in ids))
+    trial.ticks(60)
+    walked = from_records(steps.records[slots])
+    lengths = np.hypot(*(walked.landing - walked.standing)[:, :2].T) / state.legs_m[slots]
+    assert (np.diff(lengths) > 0.08).all()
+    hips, places = drawn(trial.world)
+    assert np.hypot(*(hips - places).T).max() < 0.1
+
+
+def test_the_stride_of_actors_is_a_parameter_of_theirs() -> None:
+    world, population = with_actors("plaza.json")
+    world.begin([])
+    world.finish(world.think())
+    actor = population.table.ids[0]
+    longer = population.navigator.parameters(actor).model_copy(update={"stride": 1.2})
+    population.set_parameters(actor, longer)
+    world.begin([])
+    world.finish(world.think())
+    strides = world.state.strides[world.state.live()]
+    population.close()
+    assert sorted(strides.tolist())[-2:] == [1.0, 1.2]

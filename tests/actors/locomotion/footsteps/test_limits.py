@@ -2,11 +2,13 @@ import numpy as np
 import pytest
 
 from esplanade.actors.locomotion.footsteps._limit_kernels import (
+    LONGEST_WALK,
     PAST_STANDING,
     PAST_TOE,
     clamped_distance,
     clamped_foot,
     distance_and_limit,
+    longest_step,
     wrapped,
 )
 from tests.actors.locomotion.courses import standing_on
@@ -19,19 +21,31 @@ def test_a_body_may_get_further_past_the_toe_of_its_standing_foot() -> None:
         ((1.0, 1.6), PAST_STANDING),
         ((1.4, 2.0), PAST_STANDING),
     ):
-        distance, limit = distance_and_limit(*place, foot)
+        distance, limit = distance_and_limit(*place, foot, 1.5)
         assert distance == pytest.approx(0.4)
         assert limit == pytest.approx(allowed)
+
+
+def test_a_runner_gets_further_past_the_toe_and_only_there() -> None:
+    foot = standing_on(0.0, 0.0)[0]
+    more = longest_step(2.9) - LONGEST_WALK
+    assert more > 0.3
+    for x, expected in ((1.0, PAST_STANDING + PAST_TOE + more), (-1.0, PAST_STANDING)):
+        _, limit = distance_and_limit(x, 0.0, foot, 2.9)
+        assert limit == pytest.approx(expected)
 
 
 @pytest.mark.parametrize("side", [1.0, -1.0])
 def test_a_foot_stays_on_its_own_side_and_within_reach(side: float) -> None:
     foot, middle = standing_on(0.0, 0.0)[0], 0.0
-    near = clamped_foot(0.2, -0.5 * side, foot, middle, side, 0.9)
+    longest = LONGEST_WALK
+    near = clamped_foot(0.2, -0.5 * side, foot, middle, side, longest, 0.9)
     assert near == pytest.approx((0.2, side * 0.11 * 0.9))
-    far = clamped_foot(9.0, 9.0 * side, foot, middle, side, 0.9)
+    far = clamped_foot(9.0, 9.0 * side, foot, middle, side, longest, 0.9)
     assert far == pytest.approx((0.86 * 0.9, side * 0.55 * 0.9))
-    kept = clamped_foot(0.3, 0.2 * side, foot, middle, side, 0.9)
+    running = clamped_foot(9.0, 9.0 * side, foot, middle, side, longest + 0.3, 0.9)
+    assert running == pytest.approx((1.16 * 0.9, side * 0.55 * 0.9))
+    kept = clamped_foot(0.3, 0.2 * side, foot, middle, side, longest, 0.9)
     assert kept == pytest.approx((0.3, 0.2 * side))
 
 

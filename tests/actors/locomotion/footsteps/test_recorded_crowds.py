@@ -67,4 +67,6 @@ def test_recorded_people_walk_on_planted_feet(name: str) -> None:
     lengths = np.concatenate(
         [np.hypot(*(b.steps.landing - b.steps.standing)[:, :2].T) for b in parade.begun]
     )
-    assert lengths.max() < 1.1 - FOOT * 0.5
+    flown = np.concatenate([b.steps.flight for b in parade.begun]) > 0.0
+    assert lengths[~flown].max() < 1.1 - FOOT * 0.5
+    assert lengths.max() < 1.4

@@ -51,9 +51,11 @@ def step_keys(
     room_m: Floats,
 ) -> tuple[Floats, Floats]:
     """Keys and toe-offs of what `fill_step_keys` writes."""
-    keys, lift = np.empty((len(elapsed), KEYS, WIDTH)), np.empty(len(elapsed))
+    keys = np.empty((len(elapsed), KEYS, WIDTH))
+    lift, flight = np.empty(len(elapsed)), np.empty(len(elapsed))
     own = CurrentPose(now.key.copy(), now.speed.copy())
-    fill_step_keys(footprints, elapsed, own, ticks, hips, room_m, gait_tables(), keys, lift)
+    tables = gait_tables()
+    fill_step_keys(footprints, elapsed, own, ticks, hips, room_m, tables, keys, lift, flight)
     return keys, lift
 
 
@@ -67,9 +69,10 @@ def test_kernels_agree_with_their_plain_twins() -> None:
 
     now = some_pose(keys)
     ticks, re_aimed = np.arange(9) + 4, np.arange(9) % 3 == 0
+    from_air = np.arange(9) % 4 == 1
     aside = np.random.default_rng(7).normal(size=(9, 2)) * 0.1
-    bent = naive.inertialise(keys, now, re_aimed, ticks, aside)
-    inertialise(keys, now.key.copy(), now.speed.copy(), re_aimed, ticks, aside)
+    bent = naive.inertialise(keys, now, re_aimed, from_air, ticks, aside)
+    inertialise(keys, now.key.copy(), now.speed.copy(), re_aimed, from_air, ticks, aside)
     np.testing.assert_allclose(keys, bent, atol=1e-12)
 
 
