@@ -15,6 +15,7 @@ from tests.patience import PATIENCE_S
 from tests.server.client import joined
 from tests.server.http import get
 from tests.server.populated import HALL
+from tests.server.recording.recorded import inputs_of_file
 from tests.server.test_process import served
 
 
@@ -68,10 +69,7 @@ async def test_a_world_with_people_runs_again_bit_for_bit(
         metrics = server.metrics.exposition().decode()
     assert "esplanade_recording_ended 0.0" in metrics
     path = tmp_path / "recordings" / "The-hall-of-..-doors.mcap"
-    with Recording(path) as recording:
-        given = [
-            each for second in recording.seconds() for tick in second.ticks for each in tick.inputs
-        ]
+    given = inputs_of_file(path)
     kinds = {each["kind"] for each in given}
     assert {"join", "follow", "move_door", "door_derived", "potential_derived"} <= kinds
     assert "Narcissus" not in str(given)
