@@ -42,7 +42,8 @@ async def recorded(
         from esplanade.server.recording.head import Built, Head  # noqa: PLC0415
         from esplanade.server.recording.zone_recording import ZoneRecording  # noqa: PLC0415
     except ModuleNotFoundError as error:
-        raise LoadingError(f"record: it needs {error.name}: install esplanade[record]") from None
+        package = (error.name or "").partition(".")[0]
+        raise LoadingError(f"record: it needs {package}: install esplanade[record]") from None
     path = free_path(settings.record / f"{_as_file(name or zone.scene.name)}.mcap")
 
     def ended(fault: Ended) -> None:

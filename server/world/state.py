@@ -182,7 +182,7 @@ class State:
         return {
             "slots": live,
             **{name: getattr(self, name)[live] for name in _COLUMNS},
-            "free": np.array(self._free, dtype=np.int32),
+            "free": list(self._free),
             "arrived": self._arrived,
             "id_blocks": [[self._next_id, self._ids_end], *map(list, self._more_ids)],
         }
