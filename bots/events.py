@@ -3,12 +3,14 @@
 from dataclasses import dataclass
 
 from esplanade.protocol.messages import (
+    Away,
     Bye,
     Census,
     Chat,
     Doors,
     Enter,
     Error,
+    GestureMade,
     Hide,
     Leave,
     Notice,
@@ -95,5 +97,7 @@ Event = (
     | Point
     | Reshape
     | Travel
+    | Away
+    | GestureMade
     | Hide
 )

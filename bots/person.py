@@ -4,7 +4,17 @@ from collections.abc import Mapping
 from types import MappingProxyType
 
 from esplanade.bots.view import Avatar, View
-from esplanade.protocol.messages import ChatLine, FromClient, Move, WalkTo, Watch, Welcome
+from esplanade.protocol.codes import Gesture
+from esplanade.protocol.messages import (
+    ChatLine,
+    FromClient,
+    MakeGesture,
+    Move,
+    Presence,
+    WalkTo,
+    Watch,
+    Welcome,
+)
 
 
 class Person:
@@ -66,6 +76,14 @@ class Person:
     async def chat(self, text: str) -> None:
         """Say a line to everyone who has this avatar in view."""
         await self._send(ChatLine(text=text))
+
+    async def gesture(self, gesture: Gesture) -> None:
+        """Make a gesture that everyone sees who has this avatar in view."""
+        await self._send(MakeGesture(gesture=gesture))
+
+    async def be_away(self, away: bool = True) -> None:
+        """Say that nobody looks through this avatar's eyes for now, or that somebody does again."""
+        await self._send(Presence(away=away))
 
     async def watch(self, actor_id: int | None) -> None:
         """Ask for the plans of an actor in view, or for none any more."""

@@ -6,6 +6,7 @@ from typing import Final
 from esplanade.bots.events import SnapshotEvent
 from esplanade.protocol import Kind, Reason
 from esplanade.protocol.messages import (
+    Away,
     Doors,
     Enter,
     Entity,
@@ -41,6 +42,8 @@ class Avatar:
     """Length of a leg; 0 until it is known."""
     stature_m: float = 0.0
     points_at: Place | None = None
+    away: bool = False
+    """Whether its person is away."""
 
 
 class View:
@@ -79,6 +82,9 @@ class View:
                 self.point(message)
             case Reshape():
                 self.reshape(message)
+            case Away():
+                if message.id in self.others:
+                    self.others[message.id].away = message.away
             case Doors():
                 self.doors.update(message.doors)
 

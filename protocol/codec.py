@@ -21,6 +21,7 @@ from esplanade.protocol.codes import (
 )
 from esplanade.protocol.errors import ProtocolError
 from esplanade.protocol.messages import (
+    Away,
     Bye,
     Census,
     Chat,
@@ -31,9 +32,11 @@ from esplanade.protocol.messages import (
     Error,
     FromClient,
     FromServer,
+    GestureMade,
     Hello,
     Hide,
     Leave,
+    MakeGesture,
     Move,
     MutePerson,
     Notice,
@@ -41,6 +44,7 @@ from esplanade.protocol.messages import (
     Plan,
     Point,
     Pong,
+    Presence,
     Report,
     Reshape,
     ServerMessage,
@@ -55,13 +59,16 @@ from esplanade.protocol.messages import (
 
 CLIENT_MESSAGES: Final[dict[int, type[FromClient]]] = {
     int(model.code): model
-    for model in (Hello, Move, WalkTo, ChatLine, Ping, Watch, SetDoor, Report, MutePerson)
+    for model in (
+        *(Hello, Move, WalkTo, ChatLine, Ping, Watch, SetDoor, Report, MutePerson),
+        *(Presence, MakeGesture),
+    )
 }
 SERVER_MESSAGES: Final[dict[int, type[FromServer]]] = {
     int(model.code): model
     for model in (
         *(Welcome, Enter, Leave, Chat, Notice, Error, Bye),
-        *(Pong, Plan, Census, Doors, Point, Reshape, Hide, Travel),
+        *(Pong, Plan, Census, Doors, Point, Reshape, Hide, Travel, Away, GestureMade),
     )
 }
 

@@ -6,10 +6,10 @@ the browser and `tests/protocol/test_codes.py` holds the two together.
 
 from enum import IntEnum, StrEnum
 
-VERSION = 4
+VERSION = 5
 """The newest version of the protocol, which our own clients speak."""
 
-SERVED_VERSIONS = (4,)
+SERVED_VERSIONS = (4, 5)
 """Every version that the server speaks, the oldest first. From 4 on it also serves the version
 before its own: a client tells its version in hello, and welcome repeats it."""
 
@@ -37,6 +37,8 @@ class ClientCode(IntEnum):
     SET_DOOR = 7
     REPORT = 8
     MUTE = 9
+    PRESENCE = 10
+    GESTURE = 11
 
 
 class ServerCode(IntEnum):
@@ -59,6 +61,8 @@ class ServerCode(IntEnum):
     RESHAPE = 78
     HIDE = 79
     TRAVEL = 80
+    AWAY = 81
+    GESTURE = 82
 
 
 class Kind(StrEnum):
@@ -78,6 +82,17 @@ class Reason(IntEnum):
     REPLANNING = 4
     NO_PATH = 5
     ARRIVED = 6
+
+
+class Gesture(IntEnum):
+    """The gestures of avatars."""
+
+    WAVE = 1
+    NOD = 2
+    POINT = 3
+    CLAP = 4
+    DANCE = 5
+    RAISE_HAND = 6
 
 
 class Outcome(IntEnum):

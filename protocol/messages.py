@@ -18,6 +18,7 @@ from esplanade.protocol.codes import (
     ByeCode,
     ClientCode,
     ErrorCode,
+    Gesture,
     Kind,
     NoticeCode,
     Outcome,
@@ -165,7 +166,33 @@ class MutePerson(FromClient):
     muted: bool
 
 
-ClientMessage = Hello | Move | WalkTo | ChatLine | Ping | Watch | SetDoor | Report | MutePerson
+class Presence(FromClient):
+    """Say that the person is away from the screen, or there again."""
+
+    code = ClientCode.PRESENCE
+    away: bool
+
+
+class MakeGesture(FromClient):
+    """Let the own avatar make a gesture, one of `Gesture`."""
+
+    code = ClientCode.GESTURE
+    gesture: Annotated[int, Field(ge=min(Gesture), le=max(Gesture))]
+
+
+ClientMessage = (
+    Hello
+    | Move
+    | WalkTo
+    | ChatLine
+    | Ping
+    | Watch
+    | SetDoor
+    | Report
+    | MutePerson
+    | Presence
+    | MakeGesture
+)
 
 # --- server → client --------------------------------------------------------------------------
 
@@ -403,6 +430,22 @@ class Travel(FromServer):
     """The name of the portal there that the person has come out of."""
 
 
+class Away(FromServer):
+    """The person of an avatar in view is away from now on, or there again."""
+
+    code = ServerCode.AWAY
+    id: EntityId
+    away: bool
+
+
+class GestureMade(FromServer):
+    """An avatar in view makes a gesture."""
+
+    code = ServerCode.GESTURE
+    id: EntityId
+    gesture: Annotated[Gesture | int, Field(union_mode="left_to_right")]
+
+
 ServerMessage = (
     Welcome
     | Enter
@@ -421,4 +464,6 @@ ServerMessage = (
     | Point
     | Reshape
     | Travel
+    | Away
+    | GestureMade
 )

@@ -35,7 +35,7 @@ const { operator, admission, at, lookYaw, rest } = readAddress(location.hash);
 if (operator !== null || admission !== null) {
   history.replaceState(history.state, "", location.pathname + location.search + rest);
 }
-const session = new Session(view, seats, socketAddress(document.baseURI), {
+const session = new Session(view, seats, socketAddress(document.baseURI), calm, {
   operator,
   admission,
   at,

@@ -33,6 +33,8 @@ AIM_M = 0.04
 """A push aims at this much more room than the radius."""
 LITTLE_M = 0.02
 """A push that would leave a narrow passage aims at this much more room."""
+JUST_M = 0.01
+"""A push that would leave even that passage aims at this much more room."""
 WITHIN_M = 1e-6
 EXACT_M = 1e-3
 """Anchors are rounded to parts of a cell, so that their distances are exact to this."""

@@ -20,6 +20,7 @@ from esplanade.planning.ground.layered import LayeredArrays
 from esplanade.planning.traversal._anchor_kernels import (
     AIM_M,
     EXACT_M,
+    JUST_M,
     LITTLE_M,
     SLACK_M,
     WITHIN_M,
@@ -273,6 +274,9 @@ def _bend_past(
             found, px, py = _bend_from(arrays, near, body, cells, heights, ends, tx, ty, LITTLE_M)
             if found == CLEAR:
                 return True, px, py
+        found, px, py = _bend_from(arrays, near, body, cells, heights, ends, mx, my, JUST_M)
+        if found == CLEAR:
+            return True, px, py
     # Past the end of what bars the way there may be a gap, such as a door beside its post.
     for cell in cells:
         entry = near.first[cell]

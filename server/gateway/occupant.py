@@ -25,6 +25,8 @@ class Occupant:
     """Whether the client has last asked to walk."""
     mutes: bool = False
     """Whether the client has said whom it does not want to hear."""
+    away: bool | None = None
+    """Whether the client has said that its person is away; None while it has said nothing."""
     told: list[bytes] = field(default_factory=list)
     """Frames from the host that wait until the client has been welcomed to its zone."""
     lines: list[str] = field(default_factory=list)

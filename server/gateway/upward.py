@@ -7,7 +7,7 @@ from typing import Final
 
 import numpy as np
 
-from esplanade.protocol.messages import WalkTo
+from esplanade.protocol.messages import Report, WalkTo
 from esplanade.server.gateway.occupant import Occupant
 from esplanade.server.link.batches import MOVEMENT, Batch
 
@@ -16,7 +16,7 @@ AGAIN_S: Final = 0.3
 MOST_TRIES: Final = 10
 """It is given up after so many times: the zone has refused it, or no way leads to the point."""
 MOST_WAITING: Final = 4096
-"""Lines, wishes for doors and plans that wait at once; further ones are left out."""
+"""Lines, reports, wishes for doors and plans that wait at once; further ones are left out."""
 
 
 @dataclass
@@ -48,6 +48,9 @@ class Upward:
         self._doors: dict[str, tuple[int, int, str, bool]] = {}
         self._lines: list[tuple[int, int, str]] = []
         self._muted: dict[int, tuple[int, int, list[int]]] = {}
+        self._reports: list[tuple[int, int, Report]] = []
+        self._presences: dict[int, tuple[int, int, bool]] = {}
+        self._gestures: dict[int, tuple[int, int, int]] = {}
         self.left_out = 0
         """Lines that were given up, since the zone took none of those before."""
 
@@ -88,6 +91,13 @@ class Upward:
         self._lines.append((who.person, who.generation, text))
         return True
 
+    def report(self, who: Occupant, report: Report) -> bool:
+        """Let somebody report a person or a line; False if too many wait."""
+        if len(self._reports) >= MOST_WAITING:
+            return False
+        self._reports.append((who.person, who.generation, report))
+        return True
+
     def watch(self, who: Occupant, actor: int | None) -> None:
         """Have the plans of an actor told, or of none."""
         self._watched[who.person] = (who.person, who.generation, actor)
@@ -101,6 +111,14 @@ class Upward:
         """Say whom somebody does not want to hear, which goes with the seat wherever that goes."""
         self._muted[who.person] = (who.person, who.generation, sorted(muted))
 
+    def be_away(self, who: Occupant, away: bool) -> None:
+        """Say that somebody is away from the screen, or there again."""
+        self._presences[who.person] = (who.person, who.generation, away)
+
+    def make_gesture(self, who: Occupant, gesture: int) -> None:
+        """Let an avatar make a gesture."""
+        self._gestures[who.person] = (who.person, who.generation, gesture)
+
     def batch(self, epoch: int, held: list[tuple[int, int]], now_s: float) -> Batch | None:
         """Everything since the last batch, for the owner of that epoch, with whom we serve.
 
@@ -111,7 +129,8 @@ class Upward:
             wish.sent_s = now_s
             wish.tries += 1
         waiting = (self._held, self._departed, self._stood, self._watched, self._doors, self._lines)
-        if not held and not due and not self._muted and not any(waiting):
+        said = (self._muted, self._reports, self._presences, self._gestures)
+        if not held and not due and not any(said) and not any(waiting):
             return None
         self._number += 1
         batch = Batch(
@@ -127,9 +146,13 @@ class Upward:
             list(self._doors.values()),
             self._stood,
             list(self._muted.values()),
+            self._reports,
+            list(self._presences.values()),
+            list(self._gestures.values()),
         )
         self._held, self._departed, self._lines, self._stood = [], [], [], []
-        self._watched, self._doors, self._muted = {}, {}, {}
+        self._watched, self._doors, self._muted, self._reports = {}, {}, {}, []
+        self._presences, self._gestures = {}, {}
         self._wishes = {
             person: wish for person, wish in self._wishes.items() if wish.tries < MOST_TRIES
         }
@@ -138,3 +161,5 @@ class Upward:
     def _forget(self, person: int) -> None:
         self._wishes.pop(person, None)
         self._watched.pop(person, None)
+        self._presences.pop(person, None)
+        self._gestures.pop(person, None)

@@ -370,6 +370,8 @@ class ZoneView:
             for who in self.occupants.values():
                 if who.mutes:  # the batch that has said so before may be lost
                     self._upward.mute(who, self._lines.muted_by(who.person))
+                if who.away is not None:
+                    self._upward.be_away(who, who.away)
         batch = self._upward.batch(self._epoch, held, now_s)
         if batch is None:
             return

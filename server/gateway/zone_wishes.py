@@ -109,10 +109,12 @@ class ZoneWishes:
             return
         session.tell(ProtocolError(*fault, None))
 
-    def report(self, session: Session, report: Report) -> None:  # noqa: ARG002 - as of a hub
-        """Reports are taken by worlds of one process only."""
-        text = "nobody takes reports in this world yet"
-        session.tell(ProtocolError(ErrorCode.FORBIDDEN, text, None))
+    def report(self, session: Session, report: Report) -> None:
+        """Put a report before moderators, who are at the zone."""
+        who = self._of(session)
+        if who is not None and not self._upward.report(who, report):
+            text = "too many reports wait for the place, which does not answer"
+            session.tell(ProtocolError(ErrorCode.FLOODING, text, None))
 
     def mute(self, session: Session, wish: MutePerson) -> None:
         """Send no lines of somebody to the session any more, or send them again."""
@@ -125,6 +127,19 @@ class ZoneWishes:
         else:
             text = f"you have muted {MOST_MUTED} people, no more can be at once"
             session.tell(ProtocolError(ErrorCode.FLOODING, text, None))
+
+    def presence(self, session: Session, away: bool) -> None:
+        """Let everyone who has the person in view know that they are away, or there again."""
+        who = self._of(session)
+        if who is not None:
+            who.away = away
+            self._upward.be_away(who, away)
+
+    def gesture(self, session: Session, gesture: int) -> None:
+        """Let the person's avatar make a gesture in the next tick."""
+        who = self._of(session)
+        if who is not None:
+            self._upward.make_gesture(who, gesture)
 
     def _of(self, session: Session) -> Occupant | None:
         """The occupation of a session whose seat is in the zone."""

@@ -19,9 +19,10 @@ from esplanade.server.link.batches import Batch, BatchError, decode_batch
 from esplanade.server.net.door_commands import DoorCommands
 from esplanade.server.net.fair_queue import Asker
 from esplanade.server.net.pending_inputs import PendingInputs
+from esplanade.server.net.reporting import Reporting
 from esplanade.server.net.route_requests import RouteRequests
 from esplanade.server.net.waiting_lines import WaitingLines
-from esplanade.server.world.inputs import Say, Watch
+from esplanade.server.world.inputs import MakeGesture, Say, SetAway, Watch
 from esplanade.server.world.zone import Zone
 
 MOST_WALKS: Final = 4096
@@ -45,6 +46,7 @@ class GatewayBatches:
         epoch: int,
         lines: WaitingLines[HostedGuest],
         doors: DoorCommands,
+        reporting: Reporting,
     ) -> None:
         """`lines` holds what is said to the rules of chat; `doors` moves doors for operators."""
         self._world = world
@@ -56,6 +58,7 @@ class GatewayBatches:
         self._numbers: dict[str, int] = {}
         self._lines = lines
         self._doors = doors
+        self._reporting = reporting
         self._walks: dict[int, tuple[int, int]] = {}
         self.refused: Counter[str] = Counter()
         """Batches and inputs that had no effect, by why: `bad`, `epoch`, `late`, `generation`."""
@@ -84,6 +87,8 @@ class GatewayBatches:
         self._take_held(batch, now_s)
         self._take_ways(batch)
         self._take_words(batch)
+        self._take_reports(batch, now_s)
+        self._take_manners(batch)
         for person, generation, comes_back in batch.departed:
             self._walks.pop(person, None)
             self._people.depart(person, generation, comes_back=comes_back)
@@ -143,6 +148,22 @@ class GatewayBatches:
             is_here = self._steers(person, generation) and door in self._world.doors.states()
             if is_here and guest is not None:
                 self._doors.ask(guest, SetDoor(name=door, open=is_open))
+
+    def _take_reports(self, batch: Batch, now_s: float) -> None:
+        """Take in of whom people tell those who look after the world."""
+        for person, generation, report in batch.reports:
+            guest = self._people.guests.get(person)
+            if self._steers(person, generation) and guest is not None:
+                self._reporting.take(guest, report, now_s)
+
+    def _take_manners(self, batch: Batch) -> None:
+        """Take in who is away from the screen, and which gestures people make."""
+        for person, generation, away in batch.presences:
+            if self._steers(person, generation):
+                self._pending.be_away(SetAway(person, away))
+        for person, generation, gesture in batch.gestures:
+            if self._steers(person, generation):
+                self._pending.make_gesture(MakeGesture(person, gesture))
 
     def _steers(self, person: int, generation: int) -> bool:
         if self._people.occupations.may_steer(person, generation):

@@ -172,6 +172,7 @@ class Host:
         """Run a zone that was claimed, until it is another's or this process ends."""
         log.info("claimed", zone=claim.zone, epoch=claim.epoch, host=self.name)
         await self._tell()
+        self._moderation.hear()
         tenure = Tenure(claim)
         renewal = Renewal(self._store, tenure)
         place, zone = self._world.zone(claim.zone)

@@ -45,6 +45,7 @@ from esplanade.server.net.chat_gate import ChatGate
 from esplanade.server.net.ground_work import GroundWork
 from esplanade.server.net.pace_notices import PaceNotices
 from esplanade.server.net.pending_inputs import PendingInputs
+from esplanade.server.net.reporting import Reporting
 from esplanade.server.net.route_requests import RouteRequests
 from esplanade.server.net.schedule import Schedule
 from esplanade.server.net.search_budget import SearchBudget
@@ -234,7 +235,15 @@ async def hosted_zone(
             moderation, ChatGate(moderated, storeys), lambda _: False, metrics
         )
         batches = GatewayBatches(
-            world, people, routes, pending, answering, claim.epoch, lines, doors
+            world,
+            people,
+            routes,
+            pending,
+            answering,
+            claim.epoch,
+            lines,
+            doors,
+            Reporting(moderated, moderation),
         )
         people.take_seats(found.seats, loop.time())
         send_out_the_kicked(people, tail)

@@ -11,9 +11,10 @@ from typing import Annotated, Any, Final
 import msgpack
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field, TypeAdapter, ValidationError
+from pydantic import BaseModel, Field, TypeAdapter, ValidationError
 
-from esplanade.protocol.messages import Line, WalkTo
+from esplanade.protocol.codes import Gesture
+from esplanade.protocol.messages import Line, Report, WalkTo
 
 MAGIC: Final = b"EB"
 VERSION: Final = 1
@@ -39,6 +40,7 @@ _HEAD: Final = struct.Struct("<2sBxIQQ")
 Number = Annotated[int, Field(ge=0, le=2**63 - 1)]
 Held = tuple[Number, Number]
 """A person, and the generation of the seat."""
+Made = Annotated[int, Field(ge=min(Gesture), le=max(Gesture))]
 Muted = Annotated[list[Number], Field(max_length=MOST_MUTED)]
 _Rest = tuple[
     str,  # gateway
@@ -52,6 +54,18 @@ _Rest = tuple[
     list[tuple[Number, Number, Muted]],
 ]
 _REST: Final = TypeAdapter(_Rest)
+_PARTS: Final = 9
+
+
+class _Further(BaseModel):
+    """Inputs that older programs do not know: a map behind the others, where there are any.
+
+    A program passes over those that only newer ones know.
+    """
+
+    reports: list[tuple[Number, Number, Report]] = Field(default_factory=list)
+    presences: list[tuple[Number, Number, bool]] = Field(default_factory=list)
+    gestures: list[tuple[Number, Number, Made]] = Field(default_factory=list)
 
 
 class BatchError(ValueError):
@@ -83,6 +97,12 @@ class Batch:
     """Persons whose clients have fallen silent, and whose avatars are to stand."""
     muted: list[tuple[int, int, list[int]]] = field(default_factory=list)
     """Whom persons do not want to hear from now on, all of them."""
+    reports: list[tuple[int, int, Report]] = field(default_factory=list)
+    """What persons tell those who look after the world."""
+    presences: list[tuple[int, int, bool]] = field(default_factory=list)
+    """Whether persons are away from their screens."""
+    gestures: list[tuple[int, int, int]] = field(default_factory=list)
+    """Gestures that persons make."""
 
 
 def encode_batch(batch: Batch) -> bytes:
@@ -99,6 +119,10 @@ def encode_batch(batch: Batch) -> bytes:
         batch.stood,
         batch.muted,
     ]
+    reports = [(person, generation, one.model_dump()) for person, generation, one in batch.reports]
+    further = {"reports": reports, "presences": batch.presences, "gestures": batch.gestures}
+    if any(further.values()):
+        rest.append({name: inputs for name, inputs in further.items() if inputs})
     packed: bytes = msgpack.packb(rest)
     return head + batch.movements.tobytes() + packed
 
@@ -126,7 +150,7 @@ def decode_batch(message: bytes) -> Batch:
         np.isfinite(movements["direction_rad"]).all() and np.isfinite(movements["speed_mps"]).all()
     ):
         raise BatchError("a movement is not finite")
-    rest = _read_rest(message[end:])
+    rest, further = _read_rest(message[end:])
     gateway, held, departed, walks, lines, watched, doors, stood, muted = rest
     return Batch(
         gateway,
@@ -141,12 +165,17 @@ def decode_batch(message: bytes) -> Batch:
         doors,
         stood,
         muted,
+        further.reports,
+        further.presences,
+        further.gestures,
     )
 
 
-def _read_rest(packed: bytes) -> _Rest:
+def _read_rest(packed: bytes) -> tuple[_Rest, _Further]:
     try:
-        return _REST.validate_python(msgpack.unpackb(packed))
+        rest = list(msgpack.unpackb(packed))
+        further = rest[_PARTS] if len(rest) > _PARTS else {}
+        return _REST.validate_python(rest[:_PARTS]), _Further.model_validate(further)
     except ValidationError as error:
         first = error.errors(include_url=False, include_input=False)[0]
         where = " / ".join(str(part) for part in first["loc"])

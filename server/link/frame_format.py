@@ -10,7 +10,7 @@ from typing import Any, Final
 
 import msgpack
 import numpy as np
-from pydantic import TypeAdapter, ValidationError
+from pydantic import BaseModel, Field, TypeAdapter, ValidationError
 
 from esplanade.protocol.snapshot import RECORD
 from esplanade.protocol.steps import STEP
@@ -49,6 +49,17 @@ _Rest = tuple[
     list[tuple[int, int, _Fault | None]],  # outcomes
 ]
 _REST: Final = TypeAdapter(_Rest)
+_PARTS: Final = 11
+
+
+class _Further(BaseModel):
+    """Events that older programs do not know: a map behind the others, where there are any.
+
+    A program passes over those that only newer ones know.
+    """
+
+    gestures: dict[int, int] = Field(default_factory=dict)
+    away: dict[int, bool] = Field(default_factory=dict)
 
 
 def encode_frame(frame: Frame) -> bytes:
@@ -85,7 +96,7 @@ def decode_frame(body: bytes) -> Frame:
         arrays.append(np.frombuffer(body, dtype=kind, count=count, offset=at))
         at = end
     records, steps, acks = arrays
-    rest = _read_rest(body[at:])
+    rest, further = _read_rest(body[at:])
     left, entered, reshaped, joined, attached, detached = rest[:6]
     doors, pointing, chat, plans, outcomes = rest[6:]
     return Frame(
@@ -100,7 +111,14 @@ def decode_frame(body: bytes) -> Frame:
         acks=dict(zip(acks["id"].tolist(), acks["seq"].tolist(), strict=True)),
         records=records,
         steps=steps,
-        events=Events(doors, pointing, [Line(*each) for each in chat], plans),
+        events=Events(
+            doors=doors,
+            pointing=pointing,
+            chat=[Line(*each) for each in chat],
+            gestures=further.gestures,
+            away=further.away,
+            plans=plans,
+        ),
         reshaped=[Reshaped(*each) for each in reshaped],
         outcomes=[
             Outcome(command, at_tick, None if fault is None else Fault(*fault))
@@ -113,7 +131,7 @@ def decode_frame(body: bytes) -> Frame:
 
 def _rest_of(frame: Frame) -> list[Any]:
     events = frame.events
-    return [
+    rest: list[Any] = [
         frame.left,
         [(each.id, each.kind, each.name, each.constants) for each in frame.entered],
         [
@@ -132,16 +150,21 @@ def _rest_of(frame: Frame) -> list[Any]:
             for each in frame.outcomes
         ],
     ]
+    if events.gestures or events.away:
+        rest.append({"gestures": dict(events.gestures), "away": dict(events.away)})
+    return rest
 
 
 def _fault(fault: Fault) -> tuple[str, str, dict[str, Any]]:
     return fault.code.value, fault.text, dict(fault.arguments)
 
 
-def _read_rest(packed: bytes) -> _Rest:
+def _read_rest(packed: bytes) -> tuple[_Rest, _Further]:
     try:
         # Keys of maps are avatars' ids as well as names.
-        return _REST.validate_python(msgpack.unpackb(packed, strict_map_key=False))
+        rest = list(msgpack.unpackb(packed, strict_map_key=False))
+        further = rest[_PARTS] if len(rest) > _PARTS else {}
+        return _REST.validate_python(rest[:_PARTS]), _Further.model_validate(further)
     except ValidationError as error:
         first = error.errors(include_url=False, include_input=False)[0]
         where = " / ".join(str(part) for part in first["loc"])

@@ -33,6 +33,7 @@ class WholeState:
         self._entered: dict[int, Entered] = {}
         self._reshaped: dict[int, Reshaped] = {}
         self._points_at: dict[int, Point] = {}
+        self._away: set[int] = set()
         self._doors: dict[str, bool] = {}
         self._acks: dict[int, int] = {}
         self._records = _Newest(RECORD)
@@ -71,6 +72,8 @@ class WholeState:
                 self._points_at.pop(avatar_id, None)
             else:
                 self._points_at[avatar_id] = target
+        for avatar_id, is_away in frame.events.away.items():
+            (self._away.add if is_away else self._away.discard)(avatar_id)
         self._records.add(frame.records)
         self._steps.add(frame.steps)
         self._lines.extend(line for line in frame.events.chat if line.number)
@@ -103,6 +106,7 @@ class WholeState:
                 doors=dict(self._doors),
                 pointing=dict(self._points_at),
                 chat=list(self._lines),
+                away=dict.fromkeys(sorted(self._away), True),
             ),
             reshaped=list(self._reshaped.values()),
             rate=self._rate,
@@ -125,6 +129,12 @@ class WholeState:
         gone = set(left)
         stopped = dict.fromkeys(self._points_at.keys() - whole.events.pointing.keys() - gone)
         pointing: dict[int, Point | None] = {**stopped, **whole.events.pointing}
+        back = dict.fromkeys(sorted(self._away - whole.events.away.keys() - gone), False)
+        away = {
+            one: is_away
+            for one, is_away in whole.events.away.items()
+            if one in gone or one not in self._away
+        }
         doors = {
             name: is_open
             for name, is_open in whole.events.doors.items()
@@ -143,6 +153,7 @@ class WholeState:
                 whole.events,
                 pointing=pointing,
                 doors=doors,
+                away=back | away,
                 chat=[
                     line
                     for line in whole.events.chat
@@ -159,6 +170,7 @@ class WholeState:
             self._entered.pop(one, None)
             self._reshaped.pop(one, None)
             self._points_at.pop(one, None)
+            self._away.discard(one)
             self._acks.pop(one, None)
 
 

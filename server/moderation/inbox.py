@@ -1,7 +1,7 @@
 """The inbox of moderators: what people report, and what has been settled."""
 
 from collections import OrderedDict
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Final, Literal
 
@@ -52,6 +52,7 @@ class Inbox:
         """The address from which each open report came; it is not kept."""
         self._open = 0
         self._last = 0
+        self._apart = (0, 1)
 
     def __iter__(self) -> Iterator[Report]:
         return iter(self._reports.values())
@@ -71,6 +72,16 @@ class Inbox:
             self._last = max(self._last, report.id)
         self._open = sum(report.state == "open" for report in reports)
 
+    def take_in(self, new: Iterable[Report], states: Mapping[int, tuple[str, str | None]]) -> None:
+        """Take in reports that other processes have got, and the states that are kept of all."""
+        for report in new:
+            if report.id not in self._reports:
+                self._reports[report.id] = report
+                self._last = max(self._last, report.id)
+                self._open += report.state == "open"
+        for report_id, (state, by) in states.items():
+            self.settle(report_id, "done" if state == "done" else "open", by)
+
     def check_room(self, address: str) -> None:
         """See that there is room for a report from an address.
 
@@ -85,13 +96,19 @@ class Inbox:
         if of_address >= MOST_OF_ONE:
             raise InboxFullError(f"{MOST_OF_ONE} reports of yours wait for moderators already")
 
+    def number_apart(self, place: int, of: int) -> None:
+        """Let ids be others than those that other processes give at the same time: this one is at
+        a `place` from 0 on, `of` so many."""
+        self._apart = place, of
+
     def next_id(self) -> int:
         """The id of the next report."""
-        return self._last + 1
+        place, of = self._apart
+        return self._last + 1 + (place - self._last - 1) % of
 
     def add(self, report: Report, address: str) -> list[int]:
         """Take a new report; returns the ids of those that are forgotten for it."""
-        self._last = report.id
+        self._last = max(self._last, report.id)
         self._reports[report.id] = report
         self._addresses[report.id] = address
         self._open += 1

@@ -1,10 +1,10 @@
 """Rows of moderation in the store, as functions of a connection within a read or a write."""
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from typing import Any, Final
 
-from sqlalchemy import Connection, Table, delete, insert, or_, select, update
+from sqlalchemy import Connection, Select, Table, delete, insert, or_, select, update
 
 from esplanade.server.moderation.bans import Ban
 from esplanade.server.moderation.chat_log import MOST_LINES, KeptLine
@@ -97,13 +97,30 @@ def all_bans(connection: Connection, zone: str) -> list[Ban]:
 
 def all_reports(connection: Connection, zone: str) -> list[Report]:
     """Every report, the oldest first."""
-    query = select(REPORTS).where(REPORTS.c.zone == zone).order_by(REPORTS.c.id)
+    return _reports(connection, select(REPORTS).where(REPORTS.c.zone == zone))
+
+
+def reports_but(
+    connection: Connection, zone: str, known: Collection[int]
+) -> tuple[list[Report], dict[int, tuple[str, str | None]]]:
+    """The reports that are not known yet, and of all of them the state and who has settled them."""
+    columns = REPORTS.c.id, REPORTS.c.state, REPORTS.c.settled_by
+    found = connection.execute(select(*columns).where(REPORTS.c.zone == zone)).all()
+    states = {row.id: (row.state, row.settled_by) for row in found}
+    new = states.keys() - set(known)
+    if not new:
+        return [], states
+    query = select(REPORTS).where(REPORTS.c.zone == zone, REPORTS.c.id.in_(new))
+    return _reports(connection, query), states
+
+
+def _reports(connection: Connection, query: Select[Any]) -> list[Report]:
     return [
         Report(
             **{name: getattr(row, name) for name in _REPORT_FIELDS},
             place=None if row.place is None else tuple(json.loads(row.place)),
         )
-        for row in connection.execute(query).all()
+        for row in connection.execute(query.order_by(REPORTS.c.id)).all()
     ]
 
 

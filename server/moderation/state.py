@@ -112,9 +112,10 @@ class ModerationState:
         return self._last_ban
 
     def number_apart(self, place: int, of: int) -> None:
-        """Let ids of bans be others than those that other processes give at the same time: this
-        one is at a `place` from 0 on, `of` so many."""
+        """Let ids of bans and reports be others than those that other processes give at the same
+        time: this one is at a `place` from 0 on, `of` so many."""
         self._apart = place, of
+        self.inbox.number_apart(place, of)
 
     def fact(self, subject: str, field: str) -> Any:
         """The present value of a field of a subject."""
@@ -237,7 +238,7 @@ class ModerationState:
 
     async def look(self) -> None:
         """Take in what other processes have decided: their rules hold, and those go whom their
-        bans are of.
+        bans are of. What people have reported to them is in the inbox.
 
         Raises
         ------
@@ -245,13 +246,17 @@ class ModerationState:
             The store cannot be read.
         """
         zone, decisions = self._store.zone, -1
+        reported = frozenset(self._known[1])
 
-        def read(connection: Connection) -> tuple[list[Ban], dict[str, Any]]:
-            return rows.all_bans(connection, zone), rows.all_rules(connection, zone)
+        def read(connection: Connection) -> tuple[list[Ban], dict[str, Any], Any]:
+            reports = rows.reports_but(connection, zone, reported)
+            return rows.all_bans(connection, zone), rows.all_rules(connection, zone), reports
 
         while decisions != self._decisions:  # what was decided here meanwhile is not in it
             decisions = self._decisions
-            bans, rules = await self._store.read(read)
+            bans, rules, (new, states) = await self._store.read(read)
+        self._known[1].update(states)
+        self.inbox.take_in(new, states)
         if rules != self._rules:
             self._rules, self.rules = rules, ChatRules()
             for name, value in rules.items():

@@ -1,11 +1,11 @@
 """Delivery tells everyone the news of a tick, in one pass that never waits."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 
 import numpy as np
 import numpy.typing as npt
 
-from esplanade.protocol.messages import Census, Doors, Point, Reshape
+from esplanade.protocol.messages import Away, Census, Doors, GestureMade, Point, Reshape
 from esplanade.server.net import frames
 from esplanade.server.net.lines import Lines
 from esplanade.server.net.outbox import Outbox
@@ -53,25 +53,13 @@ class Delivery:
             session.outbox.post(frame)
 
     def _changes(self, news: News) -> dict[int, list[bytes]]:
-        """The frames that no viewer must miss, by its id: views, bodies, pointing, chat."""
+        """The frames that no viewer must miss, by its id: views, bodies, gestures, chat."""
         first: dict[int, list[bytes]] = {}
         for viewer, ids in news.left.items():
             first[viewer] = [frames.leave(news.tick, ids)]
         for viewer, entities in news.entered.items():
             first.setdefault(viewer, []).append(frames.enter(news.tick, entities))
-        for actor, (target, viewers) in news.pointing.items():
-            frame = frames.message(Point(id=actor, target=target))
-            for viewer in viewers:
-                first.setdefault(viewer, []).append(frame)
-        for body, viewers in news.reshaped:
-            frame = frames.message(
-                Reshape(
-                    id=body.id,
-                    radius=body.radius_m,
-                    leg_m=body.leg_m,
-                    stature_m=body.stature_m,
-                )
-            )
+        for frame, viewers in _seen(news):
             for viewer in viewers:
                 first.setdefault(viewer, []).append(frame)
         for heard in news.chat:
@@ -136,6 +124,21 @@ class Delivery:
             if actor not in packed:
                 packed[actor] = frames.frame(plans[actor])
             session.outbox.offer(packed[actor])
+
+
+def _seen(news: News) -> Iterator[tuple[bytes, list[int]]]:
+    """Frames of what avatars do and are, each with the viewers who see it."""
+    for actor, (target, viewers) in news.pointing.items():
+        yield frames.message(Point(id=actor, target=target)), viewers
+    for body, viewers in news.reshaped:
+        reshape = Reshape(
+            id=body.id, radius=body.radius_m, leg_m=body.leg_m, stature_m=body.stature_m
+        )
+        yield frames.message(reshape), viewers
+    for avatar, (is_away, viewers) in news.away.items():
+        yield frames.message(Away(id=avatar, away=is_away)), viewers
+    for avatar, (gesture, viewers) in news.gestures.items():
+        yield frames.message(GestureMade(id=avatar, gesture=gesture)), viewers
 
 
 def _begins(ends: npt.NDArray[np.int64]) -> npt.NDArray[np.int64]:

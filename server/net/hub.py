@@ -129,7 +129,7 @@ class Hub:
             self._walk_outs,
             self._departures,
             self._lines,
-            Reporting(moderated, self.moderation.reportable, self.moderation.where),
+            Reporting(moderated, self.moderation),
         )
         """Wishes of the people who have a seat."""
         metrics.gauge("frames_waiting", "Frames that wait for slow clients", self._frames_waiting)

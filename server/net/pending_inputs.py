@@ -1,4 +1,4 @@
-"""Inputs of people until the next tick: movements, doors, plans to watch, comings and goings."""
+"""Inputs of people until the next tick: movements, gestures, doors, comings and goings."""
 
 from collections.abc import Mapping, Sequence
 
@@ -10,8 +10,10 @@ from esplanade.server.world.inputs import (
     Detach,
     Input,
     Leave,
+    MakeGesture,
     MoveDoor,
     Movement,
+    SetAway,
     Stand,
     SteerMany,
     Watch,
@@ -31,6 +33,8 @@ class PendingInputs:
         self._steers: dict[int, tuple[int, float, float]] = {}
         self._doors: dict[str, MoveDoor] = {}
         self._watches: dict[int, Watch] = {}
+        self._presences: dict[int, SetAway] = {}
+        self._gestures: dict[int, MakeGesture] = {}
         metrics.gauge(
             "movements_waiting",
             "Movements that wait for the next tick",
@@ -65,6 +69,14 @@ class PendingInputs:
         """Keep which actor somebody watches; the latest wins."""
         self._watches[wish.id] = wish
 
+    def be_away(self, wish: SetAway) -> None:
+        """Keep whether somebody is away; the latest wins."""
+        self._presences[wish.id] = wish
+
+    def make_gesture(self, wish: MakeGesture) -> None:
+        """Keep a gesture; the latest wins."""
+        self._gestures[wish.id] = wish
+
     def stand(self, avatar_id: int) -> None:
         """Let an avatar stand; a movement that waits is void."""
         self._drop(avatar_id)
@@ -74,6 +86,8 @@ class PendingInputs:
         """Forget what somebody wants whose connection has ended."""
         self._drop(avatar_id)
         self._watches.pop(avatar_id, None)
+        self._presences.pop(avatar_id, None)
+        self._gestures.pop(avatar_id, None)
 
     def _drop(self, avatar_id: int) -> bool:
         """Forget a movement; whether there was one."""
@@ -102,5 +116,8 @@ class PendingInputs:
             self._movements, self._steers = {}, {}
         inputs.extend(self._doors.values())
         inputs.extend(self._watches.values())
+        inputs.extend(self._presences.values())
+        inputs.extend(self._gestures.values())
         self._comings, self._doors, self._watches = [], {}, {}
+        self._presences, self._gestures = {}, {}
         return inputs

@@ -1,18 +1,19 @@
 """Reports that people make of others, on their way to the moderators' inbox."""
 
 from collections import OrderedDict
-from collections.abc import Callable
 from typing import Final
+
+import structlog
 
 from esplanade.protocol import ErrorCode, NoticeCode, ProtocolError
 from esplanade.protocol.messages import Notice, Report
 from esplanade.server.moderation import inbox
-from esplanade.server.moderation.areas import Place
 from esplanade.server.moderation.inbox import InboxFullError
 from esplanade.server.moderation.state import ModerationState
 from esplanade.server.net import frames
+from esplanade.server.net.guests import Guest
 from esplanade.server.net.limits import TokenBucket
-from esplanade.server.net.session import Session
+from esplanade.server.net.moderation import PeopleModeration
 
 EVERY_S: Final = 20.0
 AT_ONCE: Final = 3
@@ -20,52 +21,60 @@ AT_ONCE: Final = 3
 MOST_SPEAKERS: Final = 4096
 """Of more people who have reported, the one who did so longest ago is forgotten."""
 
-PersonNamed = Callable[[int], str | None]
-WhereIs = Callable[[int], Place | None]
+log = structlog.get_logger(__name__)
 
 
 class Reporting:
     """Takes reports, a few from each person."""
 
-    def __init__(self, kept: ModerationState, name_of: PersonNamed, where: WhereIs) -> None:
+    def __init__(self, kept: ModerationState, people: PeopleModeration) -> None:
         self._kept = kept
-        self._name_of = name_of
-        self._where = where
+        self._people = people
         self._buckets: OrderedDict[int, TokenBucket] = OrderedDict()
 
-    def take(self, session: Session, report: Report, now_s: float) -> inbox.Report | None:
-        """Put a report into the inbox and tell the person so; None, and a fault, if it cannot be.
+    def take(self, guest: Guest, report: Report, now_s: float) -> None:
+        """Put a report into the inbox, or tell the person why it cannot be taken.
 
         The person must be in the world.
         """
-        fault = self._fault(session, report, now_s)
+        fault = self._fault(guest, report, now_s)
         if fault is not None:
-            session.tell(fault)
-            return None
+            guest.tell(fault)
+            return
         said = self._kept.chat.get(report.line) if report.line is not None else None
         made = inbox.Report(
             id=self._kept.inbox.next_id(),
             at_us=self._kept.now_us(),
-            reporter=session.avatar_id or 0,
-            reporter_name=session.name,
+            reporter=guest.avatar_id or 0,
+            reporter_name=guest.name,
             person=report.id,
-            name=self._name_of(report.id) or "",
+            name=self._people.reportable(report.id) or "",
             text=report.text,
-            place=self._where(report.id),
+            place=self._people.where(report.id),
             line=report.line,
             said=said.text if said is not None and said.id == report.id else None,
         )
-        if not self._kept.report(made, session.address):
-            session.tell(_full("too many reports wait to be written; please try again later"))
-            return None
+        if not self._kept.report(made, guest.address):
+            guest.tell(_full("too many reports wait to be written; please try again later"))
+            return
         text = "Thank you. The people who look after this place can read your report now."
         notice = Notice(text=text, notice=NoticeCode.REPORT_TAKEN, arguments={"id": report.id})
-        session.outbox.post(frames.message(notice))
-        return made
+        guest.outbox.post(frames.message(notice))
+        log.info("person reported", report=made.id, id=made.person, by=made.reporter)
+        about = {
+            "report": made.id,
+            "who": made.reporter,
+            "other": made.person,
+            "name": made.name,
+            "text": made.text,
+            "place": made.place,
+        }
+        self._people.happened("report", about)
 
-    def _fault(self, session: Session, report: Report, now_s: float) -> ProtocolError | None:
-        reporter = session.avatar_id
-        if reporter is None or report.id == reporter or self._name_of(report.id) is None:
+    def _fault(self, guest: Guest, report: Report, now_s: float) -> ProtocolError | None:
+        reporter = guest.avatar_id
+        unknown = self._people.reportable(report.id) is None
+        if reporter is None or report.id == reporter or unknown:
             return ProtocolError(ErrorCode.INVALID, f"report: {report.id} is nobody here", None)
         bucket = self._buckets.setdefault(reporter, TokenBucket(1.0 / EVERY_S, AT_ONCE, now_s))
         self._buckets.move_to_end(reporter)
@@ -74,7 +83,7 @@ class Reporting:
         if not bucket.take(now_s):
             return _full(f"you report too often; once in {EVERY_S:g} s is enough")
         try:
-            self._kept.inbox.check_room(session.address)
+            self._kept.inbox.check_room(guest.address)
         except InboxFullError as error:
             return _full(f"{error}; please try again later")
         return None

@@ -24,10 +24,12 @@ from esplanade.protocol.messages import (
     ClientMessage,
     Error,
     Hello,
+    MakeGesture,
     Move,
     MutePerson,
     Ping,
     Pong,
+    Presence,
     Report,
     SetDoor,
     WalkTo,
@@ -46,6 +48,8 @@ from esplanade.server.net.refusals import Refusals
 from esplanade.server.settings import ServerSettings
 
 CHAT_BURST: Final = 5
+GESTURE_BURST: Final = 3
+GESTURES_PER_S: Final = 1.0
 _PAIR: Final = msgpack.Packer().pack_array_header(2)
 _MOVEMENT: Final = _PAIR + msgpack.packb(int(ClientCode.MOVE))
 """A movement begins with these bytes; it may begin otherwise too, but hardly any client does so."""
@@ -74,6 +78,12 @@ class SessionWishes(Protocol):
 
     def mute(self, session: "Session", wish: MutePerson) -> None:
         """Send no lines of somebody to the session any more, or send them again."""
+
+    def presence(self, session: "Session", away: bool) -> None:
+        """Let everyone who has the person in view know that they are away, or there again."""
+
+    def gesture(self, session: "Session", gesture: int) -> None:
+        """Let the person's avatar make a gesture in the next tick."""
 
 
 class SessionRequests(Protocol):
@@ -155,6 +165,7 @@ class Session:
         self._refusals = refusals
         self._hello_timeout_s = settings.hello_timeout_s
         self._lines = TokenBucket(settings.chat_rate, CHAT_BURST, now)
+        self._gestures = TokenBucket(GESTURES_PER_S, GESTURE_BURST, now)
         self._dismissal: asyncio.Task[None] | None = None
 
     @property
@@ -302,10 +313,7 @@ class Session:
                 now_s = self._hub.server_time()
                 self.outbox.post(frames.message(Pong(nonce=message.nonce, server_time=now_s)))
             case ChatLine():
-                if self._lines.take(asyncio.get_running_loop().time()):
-                    self._hub.wishes.say(self, message.text)
-                else:
-                    self.refuse_line("rate", "you talk too fast")
+                self._say(message)
             case Watch():
                 self._hub.wishes.watch(self, message.id)
             case SetDoor():
@@ -314,8 +322,25 @@ class Session:
                 self._hub.wishes.report(self, message)
             case MutePerson():
                 self._hub.wishes.mute(self, message)
+            case Presence():
+                self._hub.wishes.presence(self, message.away)
+            case MakeGesture():
+                self._make_gesture(message)
             case Hello():
                 raise ProtocolError(ErrorCode.INVALID, "hello comes only once", CloseCode.INVALID)
+
+    def _say(self, line: ChatLine) -> None:
+        if self._lines.take(asyncio.get_running_loop().time()):
+            self._hub.wishes.say(self, line.text)
+        else:
+            self.refuse_line("rate", "you talk too fast")
+
+    def _make_gesture(self, wish: MakeGesture) -> None:
+        if self._gestures.take(asyncio.get_running_loop().time()):
+            self._hub.wishes.gesture(self, wish.gesture)
+        else:
+            text = f"you make gestures too fast; {GESTURES_PER_S:g} in a second is enough"
+            self.tell(ProtocolError(ErrorCode.FLOODING, text, None))
 
     def _broke_a_limit(self, closed: ConnectionClosed) -> bool:
         """Whether the connection itself has ended the client, told it why, and counted that."""

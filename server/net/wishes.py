@@ -1,4 +1,4 @@
-"""Wishes of people who are in: to move, to talk, to watch, doors, reports, silence."""
+"""Wishes of people who are in: to move, to talk, to watch, gestures, doors, reports, silence."""
 
 import asyncio
 from collections.abc import Mapping, Sequence
@@ -23,7 +23,15 @@ from esplanade.server.net.session import Session
 from esplanade.server.net.waiting_lines import WaitingLines
 from esplanade.server.net.walk_outs import WalkOuts
 from esplanade.server.world.audience import Audience
-from esplanade.server.world.inputs import Follow, MoveDoor, Movement, Steer, Watch
+from esplanade.server.world.inputs import (
+    Follow,
+    MakeGesture,
+    MoveDoor,
+    Movement,
+    SetAway,
+    Steer,
+    Watch,
+)
 from esplanade.server.world.routes import Route
 from esplanade.server.world.zone import Zone
 
@@ -169,18 +177,7 @@ class Wishes:
 
     def report(self, session: Session, report: Report) -> None:
         """Put a report about somebody before moderators, and tell the person so."""
-        made = self._reporting.take(session, report, asyncio.get_running_loop().time())
-        if made is not None:
-            log.info("person reported", report=made.id, id=made.person, by=made.reporter)
-            about = {
-                "report": made.id,
-                "who": made.reporter,
-                "other": made.person,
-                "name": made.name,
-                "text": made.text,
-                "place": made.place,
-            }
-            self._moderation.happened("report", about)
+        self._reporting.take(session, report, asyncio.get_running_loop().time())
 
     def mute(self, session: Session, wish: MutePerson) -> None:
         """Send no lines of somebody to the session any more, or send them again."""
@@ -190,3 +187,13 @@ class Wishes:
         if not self._moderation.lines.mute(avatar_id, wish.id, muted=wish.muted):
             text = f"you have muted {MOST_MUTED} people, no more can be at once"
             session.tell(ProtocolError(ErrorCode.FLOODING, text, None))
+
+    def presence(self, session: Session, away: bool) -> None:
+        """Let everyone who has the person in view know that they are away, or there again."""
+        if session.avatar_id is not None:
+            self._pending.be_away(SetAway(session.avatar_id, away))
+
+    def gesture(self, session: Session, gesture: int) -> None:
+        """Let the person's avatar make a gesture in the next tick."""
+        if session.avatar_id is not None:
+            self._pending.make_gesture(MakeGesture(session.avatar_id, gesture))

@@ -68,6 +68,10 @@ class News:
     """The new target of each actor that points, and the viewers who see it; by the actor's id."""
     reshaped: list[tuple[Reshaped, list[int]]]
     """Avatars that have another body since this tick, and who sees each."""
+    gestures: Mapping[int, tuple[int, list[int]]]
+    """The gesture that each avatar begins, and the viewers who see it; by the avatar's id."""
+    away: Mapping[int, tuple[bool, list[int]]]
+    """Whether each of these is away, and the viewers who are to be told so; by the avatar's id."""
     chat: list[Heard]
     """In the order in which people spoke."""
     snapshots: Snapshots
@@ -94,13 +98,20 @@ class Audience:
         with self._times.stage("interest"):
             heard = self._last_words(frame)
             left = self._come_and_go(frame)
-            entered = self._look(frame, left)
+            entered, found_away = self._look(frame, left)
             self._interest.charge(_sizes(left, entered), self._budget)
             pointed = frame.events.pointing
             spoken = [line.id for line in frame.events.chat]
-            seen = self._interest.seen_by([*pointed, *spoken, *(r.id for r in frame.reshaped)])
+            made, gone_away = frame.events.gestures, frame.events.away
+            bodies = [each.id for each in frame.reshaped]
+            seen = self._interest.seen_by([*pointed, *spoken, *bodies, *made, *gone_away])
             reshaped = [(each, seen[each.id]) for each in frame.reshaped]
             pointing = {actor: (target, seen[actor]) for actor, target in pointed.items()}
+            gestures = {avatar: (made[avatar], seen.get(avatar, [])) for avatar in made}
+            away = {one: (is_away, seen.get(one, [])) for one, is_away in gone_away.items()}
+            for avatar, viewers in found_away.items():
+                known = away.get(avatar, (True, []))[1]
+                away[avatar] = (True, known + [one for one in viewers if one not in known])
             for k, line in enumerate(frame.events.chat):
                 if line.id in self._avatars:
                     heard[k] = Heard(line, self._avatars.name(line.id), seen[line.id])
@@ -114,6 +125,8 @@ class Audience:
             entered=entered,
             pointing=pointing,
             reshaped=reshaped,
+            gestures=gestures,
+            away=away,
             chat=chat,
             snapshots=snapshots,
             events=frame.events,
@@ -181,14 +194,24 @@ class Audience:
             interest.acknowledge(frame.acks)
         return left
 
-    def _look(self, frame: Frame, left: dict[int, list[int]]) -> dict[int, list[bytes]]:
-        """Look again; adds to `left`, and returns the avatars that came into view, by viewer."""
+    def _look(
+        self, frame: Frame, left: dict[int, list[int]]
+    ) -> tuple[dict[int, list[bytes]], dict[int, list[int]]]:
+        """Look again; adds to `left`, and returns the avatars that came into view, by viewer.
+
+        And, by the ids of those among them who are away, the viewers into whose view they came.
+        """
         came, went = self._interest.look(frame.tick)
         for viewer, ids in went.items():
             left.setdefault(viewer, []).extend(ids)
         rows = np.array(sorted({row for rows in came.values() for row in rows}), dtype=np.int64)
         packed = dict(zip(rows.tolist(), self._avatars.pack(rows), strict=True))
-        return {viewer: [packed[row] for row in rows] for viewer, rows in came.items()}
+        found_away: dict[int, list[int]] = {}
+        for viewer, seen in came.items():
+            for avatar in self._avatars.away(seen):
+                found_away.setdefault(avatar, []).append(viewer)
+        entered = {viewer: [packed[row] for row in seen] for viewer, seen in came.items()}
+        return entered, found_away
 
     def _encode(self, tick: int) -> Snapshots:
         """Snapshots for every viewer against what it has; its own avatar is always in it."""

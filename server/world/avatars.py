@@ -1,5 +1,6 @@
 """The avatars of a zone as an audience knows them: from frames, and from nothing else."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any, Final
 
@@ -36,6 +37,7 @@ class Avatars:
         self._rows: dict[int, int] = {}
         self._known: dict[int, Entered] = {}
         self._points_at: dict[int, Point] = {}
+        self._away: set[int] = set()
         self.ids = np.zeros(FIRST_ROWS, dtype=np.int64)
         self.changes = Changes(*(np.zeros(FIRST_ROWS, dtype=np.int32) for _ in Changes._fields))
         self.places = np.zeros((FIRST_ROWS, 3), dtype=np.int64)
@@ -59,6 +61,10 @@ class Avatars:
         """The name of an avatar that is there."""
         return self._known[avatar_id].name
 
+    def away(self, rows: Sequence[int]) -> list[int]:
+        """Ids of those in these rows whose people are away."""
+        return [one for one in self.ids[list(rows)].tolist() if one in self._away]
+
     def remove(self, ids: list[int]) -> None:
         """Take avatars out; their rows are used again."""
         for avatar_id in ids:
@@ -67,6 +73,7 @@ class Avatars:
                 continue
             del self._known[avatar_id]
             self._points_at.pop(avatar_id, None)
+            self._away.discard(avatar_id)
             self.ids[row] = 0
             for ticks in self.changes:
                 ticks[row] = 0
@@ -93,7 +100,7 @@ class Avatars:
             self._known[each.id] = replace(known, constants=each.constants)
 
     def update(self, frame: Frame) -> None:
-        """Take in the records, the steps and the pointing of a frame."""
+        """Take in the records, the steps, the pointing of a frame, and who is away."""
         rows = self._rows_of(frame.records["id"])
         changes = self.changes
         urgent = _urgent(self.records[rows].view(RECORD)[:, 0], frame.records)
@@ -112,6 +119,8 @@ class Avatars:
                 self._points_at.pop(avatar_id, None)
             else:
                 self._points_at[avatar_id] = target
+        for avatar_id, is_away in frame.events.away.items():
+            (self._away.add if is_away else self._away.discard)(avatar_id)
 
     def pack(self, rows: Rows) -> list[bytes]:
         """Avatars, int64 (N,), as they stand in enter messages."""

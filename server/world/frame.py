@@ -60,6 +60,10 @@ class Events:
     """The places that actors point at since this tick, by their ids; None for none any more."""
     chat: list[Line] = field(default_factory=list)
     """In the order in which people spoke; of somebody who left in this tick, before they did."""
+    gestures: Mapping[int, int] = field(default_factory=dict)
+    """The gesture that each of these avatars begins in this tick, by its id."""
+    away: Mapping[int, bool] = field(default_factory=dict)
+    """Avatars whose people are away since this tick, or there again; at first all are there."""
     plans: Mapping[int, bytes] = field(default_factory=dict)
     """Of the actors that somebody watches and whose turn it is, by their ids: packed messages."""
 
@@ -106,6 +110,7 @@ class Recorder:
         self._records = np.zeros(state.capacity, dtype=RECORD)
         self._arrivals = np.zeros(state.capacity, dtype=np.int64)
         self._bodies = np.zeros((state.capacity, 3))
+        self._away = np.zeros(state.capacity, dtype=np.bool_)
 
     def entered(self) -> list[Entered]:
         """The avatars that came into the world since the last call."""
@@ -116,6 +121,7 @@ class Recorder:
         # Whoever has come back to the same place has its record told all the same.
         self._records[new] = np.zeros(1, dtype=RECORD)
         self._bodies[new] = self._bodies_of(new)
+        self._away[new] = False
         return [self._describe(slot) for slot in new[np.argsort(state.ids[new])].tolist()]
 
     def reshaped(self) -> list[Reshaped]:
@@ -133,6 +139,14 @@ class Recorder:
             )
         ]
 
+    def away(self) -> dict[int, bool]:
+        """Avatars whose people have gone away since the last call, or are there again, by id."""
+        state = self._state
+        live = state.live()
+        changed = live[self._away[live] != state.away[live]]
+        self._away[changed] = state.away[changed]
+        return dict(zip(state.ids[changed].tolist(), state.away[changed].tolist(), strict=True))
+
     def save(self) -> dict[str, Any]:
         """All that was told last of everyone, as copies of arrays in the order of live slots."""
         live = self._state.live()
@@ -140,6 +154,7 @@ class Recorder:
             "records": self._records[live],
             "arrivals": self._arrivals[live],
             "bodies": self._bodies[live],
+            "away": self._away[live],
         }
 
     def load(self, saved: Mapping[str, Any]) -> None:
@@ -154,6 +169,7 @@ class Recorder:
         self._arrivals[:] = 0
         self._records[live] = np.asarray(saved["records"], dtype=RECORD)
         self._arrivals[live], self._bodies[live] = saved["arrivals"], saved["bodies"]
+        self._away[live] = saved["away"]
 
     def _bodies_of(self, slots: Slots) -> Floats:
         """Radius, leg and stature, float64 (N, 3), metres."""

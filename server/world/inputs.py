@@ -106,6 +106,22 @@ class Say:
 
 
 @dataclass(frozen=True, slots=True)
+class SetAway:
+    """A person is away from the screen from now on, or there again."""
+
+    id: int
+    away: bool
+
+
+@dataclass(frozen=True, slots=True)
+class MakeGesture:
+    """The avatar makes a gesture, one of `esplanade.protocol.codes.Gesture`."""
+
+    id: int
+    gesture: int
+
+
+@dataclass(frozen=True, slots=True)
 class Watch:
     """A person wants the plans of an actor from now on, or of none."""
 
@@ -248,7 +264,7 @@ class Still:
 
 
 Movement = Steer | Follow
-OfPerson = Attach | Detach | Leave | Stand | Steer | Follow | Say | Watch
+OfPerson = Attach | Detach | Leave | Stand | Steer | Follow | Say | Watch | SetAway | MakeGesture
 """Inputs of one avatar, by its `id`."""
 OneActorCommand = (
     SetParameters

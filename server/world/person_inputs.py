@@ -11,8 +11,10 @@ from esplanade.server.world.inputs import (
     Follow,
     Join,
     Leave,
+    MakeGesture,
     OfPerson,
     Say,
+    SetAway,
     Stand,
     Steer,
     SteerMany,
@@ -51,6 +53,7 @@ class PersonInputs:
         self.left: list[int] = []
         self.acks: dict[int, int] = {}
         self.chat: list[Line] = []
+        self.gestures: dict[int, int] = {}
 
     @property
     def watched(self) -> Collection[int]:
@@ -94,9 +97,11 @@ class PersonInputs:
             case Stand():
                 self._people.stop(slot)
             case Attach():
+                self._state.away[slot] = False
                 self.attached.append((item.ticket, item.id))
             case Detach():
                 self._people.stop(slot)
+                self._state.away[slot] = True
                 self._look_no_more(item.id)
                 self.detached.append(item.id)
             case Leave():
@@ -108,6 +113,10 @@ class PersonInputs:
                 self.chat.append(Line(item.id, item.text))
             case Watch():
                 self._watch(item)
+            case SetAway():
+                self._state.away[slot] = item.away
+            case MakeGesture():
+                self.gestures[item.id] = item.gesture
 
     def steer(self, wish: SteerMany) -> None:
         """Take in which ways people want to walk; those who are gone are left out."""

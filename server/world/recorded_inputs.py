@@ -98,6 +98,8 @@ AS_THEY_ARE: Final[dict[str, type[Any]]] = {
     "move_door": live.MoveDoor,
     "say": live.Say,
     "watch": live.Watch,
+    "set_away": live.SetAway,
+    "make_gesture": live.MakeGesture,
     "add_actors": live.AddActors,
     "remove_actors": live.RemoveActors,
     "change_behaviour": live.ChangeBehaviour,

@@ -98,13 +98,17 @@ class SavedZone:
         self._contacts.actor_actor = int(among_actors)
 
     def put(self, person: Returning, heading: float = 0.0) -> None:
-        """Let a person's avatar stand where it was, or on the nearest ground where it can."""
+        """Let a person's avatar stand where it was, or on the nearest ground where it can.
+
+        It waits for its person, who is away.
+        """
         if not all(map(math.isfinite, (*person.place, heading))):
             raise ValueError(f"the place of person {person.id} is not finite")
         place = self._spawning.place(person.place)
         layer = self._grid.layer_at(place[:2], place[2])
         slot = self._state.add(PERSON, person.name, place, layer, self._person_radius_m, person.id)
         self._state.headings[slot] = heading
+        self._state.away[slot] = True
 
     def _load_people(self, saved: Mapping[str, Any], people: Sequence[Returning]) -> None:
         ids, places, headings = (np.asarray(saved[k]) for k in ("ids", "places", "headings"))

@@ -32,6 +32,7 @@ _COLUMNS: Final = (
     "speeds",
     "reasons",
     "radii",
+    "away",
     "scales",
     "legs_m",
     "statures_m",
@@ -56,7 +57,7 @@ class State:
     `before` holds the positions of the tick before; `heights` are those of the feet above the
     scene's ground, metres; `ahead` is where each is going, as in
     `esplanade.actors.locomotion.Course`; legs and statures are those drawn for an avatar, `scales`
-    times as long.
+    times as long. `away` marks those who wait for their people.
     """
 
     def __init__(self, capacity: int) -> None:
@@ -77,6 +78,7 @@ class State:
         self.scales = np.ones(capacity)
         self.legs_m = np.zeros(capacity)
         self.statures_m = np.zeros(capacity)
+        self.away = np.zeros(capacity, dtype=np.bool_)
         self.names = [""] * capacity
         self._slots: dict[int, int] = {}
         self._arrived = 0
@@ -161,6 +163,7 @@ class State:
         self.reasons[slot] = 0
         self.radii[slot] = radius_m
         self.scales[slot] = 1.0
+        self.away[slot] = False
         self.names[slot] = name
         self._slots[avatar_id] = slot
         return slot

@@ -28,6 +28,7 @@ from esplanade.server.world.contacts import Contacts
 from esplanade.server.world.doors import Doors
 from esplanade.server.world.exact_state import ExactState, Parts
 from esplanade.server.world.frame import Events, Frame, Recorder
+from esplanade.server.world.greetings import Greetings
 from esplanade.server.world.inputs import (
     ActorCommand,
     ActorsDerived,
@@ -114,6 +115,7 @@ class Zone:
         self._commands = ActorCommands(
             population, self._actors, scene, self.most_actors, roster, self.doors.want
         )
+        self._greetings = Greetings(self.state, self._actors, self._commands)
         self._recorder = Recorder(self.state, self.origin_m)
         self._plan_period = max(1, round(1.0 / tick_s) // PLANS_PER_SECOND)
         self.steps = LatestSteps(self.state.capacity)
@@ -224,7 +226,7 @@ class Zone:
                 acks=self._persons.acks,
                 records=self._recorder.changed(),
                 steps=self.steps.begun_in(self.tick, self.state.live()),
-                events=Events(self._moved_doors, pointing, self._persons.chat, self._plans()),
+                events=self._events(pointing),
                 outcomes=self._commands.outcomes,
                 actors_stood=not (actors_moved or self._still) and len(self._population) > 0,
             )
@@ -493,6 +495,17 @@ class Zone:
                     self._persons.take(item, self.state.slot(item.id))
             case _:
                 self._persons.gone(self._commands.take(item, self.tick))
+
+    def _events(self, pointing: dict[int, Point | None]) -> Events:
+        gestures = self._persons.gestures
+        return Events(
+            doors=self._moved_doors,
+            pointing=pointing,
+            chat=self._persons.chat,
+            gestures=gestures | self._greetings.answers(gestures),
+            away=self._recorder.away(),
+            plans=self._plans(),
+        )
 
     def _plans(self) -> dict[int, bytes]:
         """Why the watched actors do what they do, of those whose turn it is; packed messages."""

@@ -14,7 +14,8 @@ from esplanade import bots
 from esplanade.bots.load import LoadJob
 from esplanade.bots.replay import ReplayJob
 from esplanade.bots.tally import Tally
-from esplanade.protocol.messages import Chat, Travel
+from esplanade.protocol import Gesture
+from esplanade.protocol.messages import Chat, GestureMade, Travel
 from esplanade.recordings import Crowd, read_crowd
 from esplanade.server.app import Running, running
 from esplanade.server.net.schedule import Schedule
@@ -131,6 +132,21 @@ async def test_visitors_go_on_in_the_zone_that_they_have_come_into(town: Running
     stop.set()
     await running
     assert (tally.joined, tally.left, tally.lost) == (3, 3, 0)
+
+
+async def test_bots_wave_and_know_who_is_away(server: Running) -> None:
+    url = url_of(server)
+    async with bots.connect(url, name="Ann") as ann, bots.connect(url, name="Bob") as bob:
+        await until(lambda: bob.id in ann.others)
+        await bob.be_away()
+        await until(lambda: ann.others[bob.id].away)
+        await bob.be_away(False)
+        await until(lambda: not ann.others[bob.id].away)
+        await bob.gesture(Gesture.WAVE)
+        async for event in ann.events():
+            if isinstance(event, GestureMade):
+                assert (event.id, event.gesture) == (bob.id, Gesture.WAVE)
+                break
 
 
 async def test_two_bots_meet_walk_and_talk(server: Running) -> None:

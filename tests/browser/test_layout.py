@@ -17,9 +17,9 @@ SIZES = pytest.mark.parametrize(
 )
 CONTROLS = (
     "#status, #top button, #minimap, #storeys button, "
-    "#chat-toggle, #stick, #chat-line, #chat-form button"
+    "#chat-toggle, #gestures-toggle, #stick, #chat-line, #chat-form button"
 )
-PANELS = "#people, #plan, #person, #told"
+PANELS = "#people, #plan, #person, #told, #gestures"
 THUMB_PX = 44.0
 MOUSE_PX = 38.0
 
@@ -42,15 +42,20 @@ OPENINGS: Final = {
     "plan": "() => document.querySelector('#plan-open').click()",
     "chat": """() => { const toggle = document.querySelector('#chat-toggle');
       if (toggle.checkVisibility()) toggle.click(); }""",
-    "told": """() => { for (const id of ['banner', 'pace', 'invitation']) {
+    "gestures": "() => document.querySelector('#gestures-toggle').click()",
+    "told": """() => { for (const id of ['banner', 'pace', 'following', 'invitation']) {
       const told = document.getElementById(id);
-      if (id !== 'invitation') told.textContent = 'The connection was lost. Coming back by itself…';
+      if (id === 'banner' || id === 'pace')
+        told.textContent = 'The connection was lost. Coming back by itself…';
       told.hidden = false; } }""",
     "person": "() => { document.querySelector('#person').hidden = false; }",
+    "report": """() => { document.querySelector('#person').hidden = false;
+      document.querySelector('#person-report').open = true; }""",
 }
 CLOSED: Final = """() => {
   for (const opener of document.querySelectorAll('[aria-expanded="true"]')) opener.click();
-  for (const id of ['banner', 'pace', 'invitation', 'person'])
+  document.querySelector('#person-report').open = false;
+  for (const id of ['banner', 'pace', 'following', 'invitation', 'person'])
     document.getElementById(id).hidden = true;
 }"""
 
@@ -144,7 +149,9 @@ async def faults_of(visitor: Visitor, width: int, height: int, *, touch: bool) -
         if min(box["left"], box["top"]) < 0 or box["right"] > width or box["bottom"] > height:
             faults.append(f"{each['name']} is outside")
     least_px = THUMB_PX if touch else MOUSE_PX
-    buttons = await boxes_of(visitor, "#top button, #chat-toggle, #chat-form button")
+    buttons = await boxes_of(
+        visitor, "#top button, #chat-toggle, #gestures-toggle, #chat-form button"
+    )
     faults += [f"{b['name']} is low" for b in buttons if b["box"]["height"] < least_px]
     return faults
 

@@ -16,6 +16,7 @@ from esplanade.protocol import (
     ClientCode,
     CloseCode,
     ErrorCode,
+    Gesture,
     Kind,
     NoticeCode,
     Outcome,
@@ -28,6 +29,7 @@ from esplanade.protocol import (
 from esplanade.protocol.codes import MAX_CHAT_CHARS, MAX_NAME_CHARS
 from esplanade.protocol.messages import (
     Admission,
+    Away,
     Blocker,
     Bye,
     Census,
@@ -40,9 +42,11 @@ from esplanade.protocol.messages import (
     Error,
     FromClient,
     FromServer,
+    GestureMade,
     Hello,
     Hide,
     Leave,
+    MakeGesture,
     Move,
     MutePerson,
     Notice,
@@ -50,6 +54,7 @@ from esplanade.protocol.messages import (
     Plan,
     Point,
     Pong,
+    Presence,
     Report,
     Reshape,
     SetDoor,
@@ -80,6 +85,8 @@ FROM_CLIENT: Final[tuple[FromClient, ...]] = (
     SetDoor(name="Gate", open=False),
     Report(id=9, line=1764440000123, text="is rude"),
     MutePerson(id=9, muted=True),
+    Presence(away=True),
+    MakeGesture(gesture=Gesture.CLAP),
 )
 
 FROM_SERVER: Final[tuple[FromServer, ...]] = (
@@ -156,6 +163,8 @@ FROM_SERVER: Final[tuple[FromServer, ...]] = (
     Point(id=8, target=None),
     Reshape(id=8, radius=0.3, leg_m=0.75, stature_m=1.5),
     Travel(zone="hall", portal="to the yard"),
+    Away(id=8, away=True),
+    GestureMade(id=8, gesture=Gesture.WAVE),
 )
 
 
@@ -166,7 +175,7 @@ def vectors() -> dict[str, Any]:
         "limits": {"MAX_NAME_CHARS": MAX_NAME_CHARS, "MAX_CHAT_CHARS": MAX_CHAT_CHARS},
         "codes": {
             table.__name__: {member.name: member.value for member in table}
-            for table in (ClientCode, ServerCode, Reason, Outcome, CloseCode)
+            for table in (ClientCode, ServerCode, Reason, Outcome, Gesture, CloseCode)
         },
         "kinds": _values(Kind),
         "client": [_vector(message) for message in FROM_CLIENT],

@@ -12,6 +12,7 @@ from esplanade.protocol.codes import (
     ClientCode,
     CloseCode,
     ErrorCode,
+    Gesture,
     Kind,
     Outcome,
     Reason,
@@ -28,7 +29,7 @@ def typescript_table(name: str) -> dict[str, int]:
     return {key: int(value) for key, value in re.findall(r"(\w+):\s*(\d+)", found[1])}
 
 
-@pytest.mark.parametrize("table", [ClientCode, ServerCode, Reason, Outcome, CloseCode])
+@pytest.mark.parametrize("table", [ClientCode, ServerCode, Reason, Outcome, Gesture, CloseCode])
 def test_the_browser_has_the_same_numbers(table: type[IntEnum]) -> None:
     assert typescript_table(table.__name__) == {entry.name: entry.value for entry in table}
 

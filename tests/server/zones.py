@@ -12,6 +12,7 @@ YARD: dict[str, Any] = {
     "name": "The yard",
     "bounds": [0, 0, 20, 20],
     "spawns": [{"position": [4, 10], "radius_m": 0.5}],
+    "doors": [{"name": "shed", "start": [1, 19], "end": [2, 19]}],
     "portals": [
         {"name": "gate", "points": [[16, 8], [18, 8], [18, 12], [16, 12]], "arrival": [14, 10]}
     ],

@@ -33,9 +33,11 @@ interface Seen extends Omit<Avatar, "animator"> {
   readonly step: { readonly stands: "left" | "right"; readonly tick: number } | null;
   /** Whether it points at something. */
   readonly pointing: boolean;
+  /** Whether it makes a gesture. */
+  readonly gesturing: boolean;
 }
 
-function seen({ id, kind, name, radius, own, pose, animator }: Avatar): Seen {
+function seen({ id, kind, name, radius, own, pose, away, animator }: Avatar): Seen {
   const { left, right } = animator.body;
   const pointing = animator.pointing.target !== null;
   const drawn = animator.planted ? animator.step : null;
@@ -44,7 +46,8 @@ function seen({ id, kind, name, radius, own, pose, animator }: Avatar): Seen {
     tick: drawn.tick,
   };
   const feet = { left: left.foot, right: right.foot };
-  return { id, kind, name, radius, own, pose, feet, step, pointing };
+  const gesturing = animator.gesturing.active;
+  return { id, kind, name, radius, own, pose, away, feet, step, pointing, gesturing };
 }
 
 declare global {

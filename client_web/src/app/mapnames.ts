@@ -45,7 +45,8 @@ export class MapNames {
     pen.textBaseline = "middle";
     for (const avatar of sorted) {
       const said = this.said.get(avatar.id);
-      const text = said ? `${avatar.name}: ${said.text}` : avatar.name;
+      const away = avatar.away ? " · away" : "";
+      const text = said ? `${avatar.name}: ${said.text}` : avatar.name + away;
       const [x, y] = at(avatar);
       const width = pen.measureText(text).width + 2 * PADDING_PX * pixel;
       const box = { x, y: y - ABOVE_PX * pixel, width, height: (FONT_PX + 6) * pixel };

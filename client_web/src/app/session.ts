@@ -15,16 +15,15 @@ import { Minimap } from "../ui/minimap";
 import { NoticeBanner } from "../ui/notices";
 import { Panel } from "../ui/panels";
 import { PaceBanner } from "../ui/pace";
-import { PeopleList } from "../ui/people";
-import { PersonPanel } from "../ui/person";
 import { PlanPanel } from "../ui/plan";
-import { faultOf, noticeOf } from "../ui/sentences";
+import { arrivalIn, faultOf, greetingOf, noticeOf } from "../ui/sentences";
 import { StatusChip } from "../ui/status";
 import { World } from "../world/world";
 import type { AddressWish } from "./address";
 import { Cost } from "./cost";
-import { Mutes } from "./mutes";
-import type { Picture } from "./picture";
+import { Manners } from "./manners";
+import { Others } from "./others";
+import type { Picked, Picture } from "./picture";
 import { Walking } from "./walking";
 
 const PANELS_MS = 200;
@@ -46,11 +45,10 @@ export class Session {
   private readonly chat: ChatPanel;
   private readonly status = new StatusChip();
   private readonly pace = new PaceBanner();
-  private readonly minimap = new Minimap();
-  private readonly people: PeopleList;
+  private readonly minimap: Minimap;
+  private readonly manners: Manners;
+  private readonly others: Others;
   private readonly notices = new NoticeBanner();
-  private readonly mutes = new Mutes(localStorage);
-  private readonly person: PersonPanel;
   private readonly planPanel = new PlanPanel();
   private readonly planSwitch: Panel;
   /** The operator key; null for people without one. */
@@ -74,6 +72,8 @@ export class Session {
     private readonly view: Picture,
     private readonly seats: Seats,
     socketUrl: string,
+    /** Whether the person wants little motion. */
+    calm: boolean,
     wish: Pick<AddressWish, "operator" | "admission" | "at" | "lookYaw">,
   ) {
     this.operator = wish.operator;
@@ -95,6 +95,9 @@ export class Session {
       (at) => {
         view.marks.walkTarget(at);
       },
+      () => {
+        this.others.stopFollowing();
+      },
     );
     this.planSwitch = new Panel(
       byId("plan-open", HTMLButtonElement),
@@ -104,27 +107,27 @@ export class Session {
       },
     );
     new Panel(byId("people-open", HTMLButtonElement), byId("people", HTMLElement));
-    this.person = new PersonPanel({
-      mute: (id, name, muted) => {
-        this.mutes.set(name, muted);
-        this.people.refresh();
-        this.connection.send({ type: "mute", id, muted });
-      },
-      report: (id, line, text) => this.connection.send({ type: "report", id, line, text }),
-      linesOf: (id) => this.chat.linesOf(id),
-      isMuted: (name) => this.mutes.has(name),
-    });
-    this.people = new PeopleList(
-      (id) => {
+    this.others = new Others({
+      send: (message) => this.connection.send(message),
+      turnTo: (id) => {
         this.turnTo(id);
+      },
+      choose: (id) => {
         this.choose(id);
       },
-      (id, name) => {
-        this.turnTo(id);
-        this.person.open(id, name);
+      walkTo: (place) => {
+        this.walking.walkTo(place);
       },
-      (name) => this.mutes.has(name),
-    );
+      stand: () => {
+        this.walking.stand();
+      },
+      linesOf: (id) => this.chat.linesOf(id),
+      nameOf: (id) => this.world?.avatars.get(id)?.name ?? "",
+    });
+    this.minimap = new Minimap((at) => {
+      this.act(at);
+    });
+    this.manners = new Manners((message) => this.connection.send(message), calm);
   }
 
   /** Rejoin at once after a reload; otherwise ask for a name. */
@@ -147,10 +150,15 @@ export class Session {
     if (!this.world) return;
     const hit = this.view.pick(at, this.welcome?.operator ?? false);
     if (!hit) return;
-    if ("floor" in hit) this.walking.walkTo(hit.floor);
-    else if ("door" in hit) this.moveDoor(hit.door);
-    else if (hit.avatar.kind === "actor") this.choose(hit.avatar.id);
-    else if (!hit.avatar.own) this.person.open(hit.avatar.id, hit.avatar.name);
+    this.act(hit);
+  }
+
+  private act(hit: NonNullable<Picked>): void {
+    if ("floor" in hit) {
+      this.others.stopFollowing();
+      this.walking.walkTo(hit.floor);
+    } else if ("door" in hit) this.moveDoor(hit.door);
+    else this.others.open(hit.avatar);
   }
 
   private moveDoor(name: string): void {
@@ -179,6 +187,7 @@ export class Session {
       this.join.close();
       this.chat.note(this.travels ? arrivalIn(this.welcome) : greetingOf(this.welcome));
       this.travels = false;
+      this.manners.begin(this.welcome);
     }
     if (state.phase === "reconnecting") this.join.wait(state.text);
     if (state.phase === "refused") {
@@ -195,14 +204,11 @@ export class Session {
         break;
       case "enter":
         world?.enter(message.tick, message.entities);
-        for (const { id, kind, name } of message.entities) {
-          if (kind === "person" && this.mutes.has(name)) {
-            this.connection.send({ type: "mute", id, muted: true });
-          }
-        }
+        this.others.entered(message.entities);
         break;
       case "leave":
         world?.leave(message.ids);
+        this.others.left(message.ids);
         if (this.chosenId !== null && message.ids.includes(this.chosenId)) this.choose(null);
         break;
       case "snapshot": {
@@ -221,26 +227,29 @@ export class Session {
       case "reshape":
         world?.reshape(message.id, message.radius, message.leg_m, message.stature_m);
         break;
+      case "away":
+        world?.away(message.id, message.away);
+        break;
       case "plan":
         if (world && message.id === this.chosenId && this.planSwitch.open) world.plan = message;
         break;
       case "chat": {
         // A line may have been under way when its speaker was muted.
-        if (this.mutes.has(message.name) && message.id !== world?.ownId) break;
+        if (this.others.isMuted(message.name) && message.id !== world?.ownId) break;
         const speaker = world?.avatars.get(message.id);
         this.chat.said(message, speaker?.own ?? false);
         if (speaker) this.view.say(speaker, message.text);
         break;
       }
       case "census":
-        this.people.census(message.people, message.actors);
+        this.others.census(message.people, message.actors);
         break;
       case "error":
         if (message.error === "password_needed") this.join.askPassword();
         if (message.error === "admission_refused") this.admission = null;
-        if (CALLED_OFF.has(message.error)) this.walking.callOff();
+        if (CALLED_OFF.has(message.error)) this.callOff();
         this.chat.note(faultOf(message));
-        this.person.tell(faultOf(message));
+        this.others.tell(faultOf(message));
         break;
       case "notice":
         if (message.notice === "goal_moved") this.walking.goalMoved(message.arguments);
@@ -255,10 +264,20 @@ export class Session {
       case "travel":
         this.travels = true;
         break;
+      case "gesture":
+        if (world && !this.others.isMuted(world.avatars.get(message.id)?.name ?? "")) {
+          this.manners.show(message.id, message.gesture, world, this.view);
+        }
+        break;
       case "bye":
       case "pong":
         break;
     }
+  }
+
+  private callOff(): void {
+    this.walking.callOff();
+    this.others.stopFollowing();
   }
 
   /** A notice goes into the chat, and one of moderators into a banner too. */
@@ -270,7 +289,7 @@ export class Session {
     }
     this.chat.note(`${saying.head} ${saying.words}`);
     const { seconds, x, y, z } = message.arguments;
-    if (message.notice === "report_taken") this.person.tell(`${saying.head} ${saying.words}`);
+    if (message.notice === "report_taken") this.others.tell(`${saying.head} ${saying.words}`);
     else if (message.notice === "muted") this.notices.muted(saying.words, Number(seconds));
     else this.notices.show(saying, ["warned", "walked_out"].includes(message.notice));
     if (typeof x === "number" && typeof y === "number" && typeof z === "number") {
@@ -285,6 +304,7 @@ export class Session {
     this.walking.enter(this.world);
     this.minimap.show(welcome.scene);
     this.chosenId = null;
+    this.others.begin();
     if (!welcome.resumed || this.travels) this.hasLooked = false;
     this.pace.hide();
     if (welcome.scene.mesh !== undefined) void this.build(this.world, welcome.scene.mesh);
@@ -355,10 +375,12 @@ export class Session {
     const steppedS = Math.min(frameS, LONGEST_FRAME_S);
     this.view.camera.orbit(this.walking.turnPerS * steppedS, 0);
     this.walking.frame(this.view.camera.yaw);
+    this.others.frame(world, ms);
     this.moving.of(() => {
       world.advance(this.serverNowS(), steppedS, this.connection.clock.rate);
     });
-    this.view.frame(world, this.planSwitch.open ? this.chosenId : null, frameS);
+    const markedId = this.others.openedId ?? (this.planSwitch.open ? this.chosenId : null);
+    this.view.frame(world, markedId, frameS);
     if (ms - this.panelsMs > PANELS_MS) {
       this.panelsMs = ms;
       this.updatePanels(world);
@@ -368,17 +390,9 @@ export class Session {
   private updatePanels(world: World): void {
     const name = this.chosenId === null ? null : (world.avatars.get(this.chosenId)?.name ?? null);
     this.status.roundTrip(this.connection.clock.roundTripS);
-    this.people.update(world.avatars, this.chosenId);
+    this.others.update(world, this.chosenId, this.view.camera.yaw);
     this.planPanel.update(name, world.plan, world.avatars, world.scene);
     const { avatars, own, doors, plan } = world;
     this.minimap.update(avatars, own, doors, this.view.camera.yaw, plan);
   }
-}
-
-function greetingOf({ name, resumed }: Welcome): string {
-  return resumed ? `Welcome back, ${name}.` : `Welcome, ${name}. See Help for how to get about.`;
-}
-
-function arrivalIn({ scene }: Welcome): string {
-  return `You have come to ${scene.name}.`;
 }

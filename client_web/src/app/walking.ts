@@ -26,12 +26,15 @@ export class Walking {
   /** Whether the server walks the avatar out, and listens to nothing else. */
   private led = false;
 
+  /** `steered` is called when the person walks by keys or stick. */
   constructor(
     private readonly send: (message: ClientMessage) => boolean,
     private readonly showTarget: (at: Place | null) => void,
+    private readonly steered: () => void,
   ) {
     listenToKeys(this.keys, window);
     this.steering = new Steering(({ direction, speed }) => {
+      if (speed > 0) this.steered();
       const seq = ++this.seq;
       this.setTarget(null);
       if (!this.send({ type: "move", seq, direction, speed })) return;
@@ -65,6 +68,16 @@ export class Walking {
     this.steering.reset();
     this.world.command({ kind: "walk_to", seq, ...place });
     this.setTarget(place);
+  }
+
+  /** Stand still wherever the avatar is now. */
+  stand(): void {
+    if (!this.world || this.led) return;
+    const seq = ++this.seq;
+    this.setTarget(null);
+    if (!this.send({ type: "move", seq, direction: 0, speed: 0 })) return;
+    this.steering.reset();
+    this.world.command({ kind: "move", seq, direction: 0, speed: 0 });
   }
 
   /** The server knows no way to where the walk was to lead. */

@@ -74,6 +74,7 @@ export function listenToKeys(keys: WalkKeys, page: Window): void {
   });
 }
 
-function isTyping(target: EventTarget | null): boolean {
+/** Whether keys go to a control that takes them. */
+export function isTyping(target: EventTarget | null): boolean {
   return target instanceof Element && target.closest("input, textarea, select, dialog") !== null;
 }

@@ -4,7 +4,7 @@
  */
 
 import { decode, encode as pack } from "@msgpack/msgpack";
-import { ClientCode, ServerCode, VERSION } from "./codes";
+import { ClientCode, OLDEST_VERSION, ServerCode, VERSION } from "./codes";
 import { WireError } from "./errors";
 import type { ClientMessage, EntityRecord, Point, ServerMessage } from "./messages";
 import { readRecord, RECORD_BYTES } from "./records";
@@ -19,6 +19,8 @@ const CLIENT_CODES: Record<ClientMessage["type"], number> = {
   set_door: ClientCode.SET_DOOR,
   report: ClientCode.REPORT,
   mute: ClientCode.MUTE,
+  presence: ClientCode.PRESENCE,
+  gesture: ClientCode.GESTURE,
 };
 
 const SERVER_TYPES = new Map<unknown, ServerMessage["type"]>([
@@ -37,6 +39,14 @@ const SERVER_TYPES = new Map<unknown, ServerMessage["type"]>([
   [ServerCode.RESHAPE, "reshape"],
   [ServerCode.HIDE, "hide"],
   [ServerCode.TRAVEL, "travel"],
+  [ServerCode.AWAY, "away"],
+  [ServerCode.GESTURE, "gesture"],
+]);
+
+/** The version of the protocol that brought a message; all others were there from the beginning. */
+const SINCE = new Map<ClientMessage["type"], number>([
+  ["presence", 5],
+  ["gesture", 5],
 ]);
 
 /** Fields that servers before them do not send. */
@@ -47,9 +57,15 @@ const ADDED = new Map<ServerMessage["type"], object>([
   ["bye", { arguments: {} }],
 ]);
 
-export function encodeClient(message: ClientMessage): Uint8Array<ArrayBuffer> {
+/** Whether a server that speaks this version knows such a message. */
+export function isSpoken(type: ClientMessage["type"], version: number): boolean {
+  return version >= (SINCE.get(type) ?? OLDEST_VERSION);
+}
+
+/** A frame; the version is the one that a hello asks for. */
+export function encodeClient(message: ClientMessage, version = VERSION): Uint8Array<ArrayBuffer> {
   const { type, ...fields } = message;
-  const body = type === "hello" ? { ...fields, version: VERSION, at: null } : fields;
+  const body = type === "hello" ? { ...fields, version, at: null } : fields;
   return pack([CLIENT_CODES[type], body]);
 }
 

@@ -1,6 +1,10 @@
 /** The numbers and names on the wire; the same table as `protocol/codes.py`. */
 
-export const VERSION = 4;
+import type { GestureName } from "./messages";
+
+export const VERSION = 5;
+/** The oldest version that this client falls back on. */
+export const OLDEST_VERSION = 4;
 
 export const MAX_NAME_CHARS = 32;
 export const MAX_CHAT_CHARS = 300;
@@ -15,6 +19,8 @@ export const ClientCode = {
   SET_DOOR: 7,
   REPORT: 8,
   MUTE: 9,
+  PRESENCE: 10,
+  GESTURE: 11,
 } as const;
 
 export const ServerCode = {
@@ -35,6 +41,8 @@ export const ServerCode = {
   RESHAPE: 78,
   HIDE: 79,
   TRAVEL: 80,
+  AWAY: 81,
+  GESTURE: 82,
 } as const;
 
 export const Reason = {
@@ -46,6 +54,21 @@ export const Reason = {
   NO_PATH: 5,
   ARRIVED: 6,
 } as const;
+
+/** The gestures of avatars. */
+export const Gesture = {
+  WAVE: 1,
+  NOD: 2,
+  POINT: 3,
+  CLAP: 4,
+  DANCE: 5,
+  RAISE_HAND: 6,
+} as const;
+
+/** The names of gestures by their numbers; a server may know more of them. */
+export const GESTURE_NAMES = new Map<number, GestureName>(
+  Object.entries(Gesture).map(([name, number]) => [number, name.toLowerCase() as GestureName]),
+);
 
 /** How the trip of an actor ended. */
 export const Outcome = {

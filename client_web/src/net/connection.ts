@@ -3,8 +3,8 @@
 import { backoffMs } from "./backoff";
 import { ServerClock } from "./clock";
 import { closing, type Closing } from "./closing";
-import { CloseCode } from "./codes";
-import { decodeServer, encodeClient } from "./codec";
+import { CloseCode, OLDEST_VERSION, VERSION } from "./codes";
+import { decodeServer, encodeClient, isSpoken } from "./codec";
 import { WireError } from "./errors";
 import type { Admission, Arguments, ClientMessage, ServerMessage, Welcome } from "./messages";
 import { stated } from "./stated";
@@ -56,6 +56,8 @@ export class Connection {
   private greeting: Greeting | null = null;
   private attempt = 0;
   private stated: string | null = null;
+  /** The version that the next hello asks for: an older one once the newest was refused. */
+  private version = VERSION;
   private heardMs = 0;
   private doubted = false;
   private pingNonce = 0;
@@ -104,9 +106,10 @@ export class Connection {
     this.ping();
   }
 
-  /** False if the message could not be sent because the connection is not live. */
+  /** False if the message could not be sent: the connection is not live, or the server too old. */
   send(message: ClientMessage): boolean {
     if (this.state_.phase !== "live" || this.socket?.readyState !== OPEN) return false;
+    if (!isSpoken(message.type, this.version)) return false;
     this.socket.send(encodeClient(message));
     return true;
   }
@@ -119,13 +122,18 @@ export class Connection {
     this.heardMs = performance.now();
     socket.binaryType = "arraybuffer";
     socket.onopen = () => {
-      if (this.greeting) socket.send(encodeClient({ type: "hello", ...this.greeting }));
+      if (!this.greeting) return;
+      socket.send(encodeClient({ type: "hello", ...this.greeting }, this.version));
     };
     socket.onmessage = (event) => {
       this.receive(event.data);
     };
     socket.onclose = (event) => {
-      this.lost(closing(event.code, this.stated));
+      if (event.code === CloseCode.UNSUPPORTED_VERSION && this.version > OLDEST_VERSION) {
+        this.version--;
+        this.drop();
+        this.connect();
+      } else this.lost(closing(event.code, this.stated));
     };
     this.pulseTimer = setInterval(() => {
       this.pulse();

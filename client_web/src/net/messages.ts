@@ -23,7 +23,10 @@ export type ClientMessage =
   | { type: "watch"; id: number | null }
   | { type: "set_door"; name: string; open: boolean }
   | { type: "report"; id: number; line: number | null; text: string }
-  | { type: "mute"; id: number; muted: boolean };
+  | { type: "mute"; id: number; muted: boolean }
+  /** The person is away from the screen, or there again. */
+  | { type: "presence"; away: boolean }
+  | { type: "gesture"; gesture: number };
 
 /** The arguments of a sentence of the server, by names. */
 export type Arguments = Record<string, unknown>;
@@ -33,6 +36,9 @@ export interface Admission {
   way: "invitation" | "password" | "pass";
   secret: string;
 }
+
+/** The gestures of avatars, by name. */
+export type GestureName = "wave" | "nod" | "point" | "clap" | "dance" | "raise_hand";
 
 /** Whether each door stands open, by name. */
 export type Doors = Record<string, boolean>;
@@ -238,4 +244,7 @@ export type ServerMessage =
   /** An avatar in view has another body from now on. */
   | { type: "reshape"; id: number; radius: number; leg_m: number; stature_m: number }
   /** The person has come into another zone; the welcome of there follows. */
-  | { type: "travel"; zone: string; portal: string };
+  | { type: "travel"; zone: string; portal: string }
+  /** The person of an avatar in view is away from now on, or there again. */
+  | { type: "away"; id: number; away: boolean }
+  | { type: "gesture"; id: number; gesture: number };

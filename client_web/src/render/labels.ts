@@ -21,6 +21,7 @@ interface Label {
   name: HTMLElement;
   spoken: HTMLElement;
   spokenUntilMs: number;
+  away: boolean;
   /** Pixels as it is shown now; null if it has to be measured anew. */
   size: { width: number; height: number } | null;
 }
@@ -64,6 +65,7 @@ export class Labels {
       this.head(avatar).project(camera);
       if (this.at.z > 1 || Math.abs(this.at.x) > 1.1 || Math.abs(this.at.y) > 1.1) continue;
       const label = this.labelOf(avatar);
+      markAway(label, avatar);
       const x = ((this.at.x + 1) / 2) * width;
       const y = ((1 - this.at.y) / 2) * height;
       if (!this.room.take({ x, y, ...this.sizeOf(label, now) })) continue;
@@ -125,8 +127,16 @@ export class Labels {
     name.textContent = avatar.name;
     element.append(spoken, name);
     this.layer.append(element);
-    const label = { element, name, spoken, spokenUntilMs: 0, size: null };
+    const label = { element, name, spoken, spokenUntilMs: 0, away: false, size: null };
     this.labels.set(avatar.id, label);
     return label;
   }
+}
+
+function markAway(label: Label, { name, away }: Avatar): void {
+  if (label.away === away) return;
+  label.away = away;
+  label.name.textContent = away ? `${name} · away` : name;
+  label.element.classList.toggle("away", away);
+  label.size = null;
 }

@@ -9,6 +9,12 @@ import { drawFloorplan, drawMesh } from "./floorplan";
 import { MapMarks } from "./mapmarks";
 import { StoreySwitch } from "./storeyswitch";
 
+/** One may click this far beside somebody, pixels of the page. */
+const BESIDE_PX = 7;
+
+/** What is clicked on the map: somebody, or a place on the shown storey. */
+export type Tapped = { avatar: Avatar } | { floor: { x: number; y: number; z: number } };
+
 export class Minimap {
   private readonly canvas = byId("minimap", HTMLCanvasElement);
   private readonly still = document.createElement("canvas");
@@ -19,7 +25,13 @@ export class Minimap {
   });
   private readonly fit = { scale: 1, left: 0, top: 0, pixel: 1 };
 
-  constructor() {
+  private avatars: ReadonlyMap<number, Avatar> = new Map();
+
+  constructor(tap: (at: Tapped) => void) {
+    this.canvas.addEventListener("click", (event) => {
+      const at = this.at(event.offsetX, event.offsetY);
+      if (at) tap(at);
+    });
     new ResizeObserver(() => {
       this.layOut();
     }).observe(this.canvas);
@@ -42,6 +54,7 @@ export class Minimap {
   ): void {
     const pen = this.canvas.getContext("2d");
     const { scene, choice } = this;
+    this.avatars = avatars;
     if (!pen || !scene) return;
     if (own) choice.follow(storeyAt(scene.storeys, own.pose.z));
     pen.clearRect(0, 0, this.canvas.width, this.canvas.height);
@@ -52,6 +65,24 @@ export class Minimap {
     if (plan) marks.path(plan);
     for (const avatar of avatars.values()) if (!avatar.own) marks.other(avatar, 1);
     if (own) marks.own(own, cameraYaw, 1);
+  }
+
+  /** Whoever is at a point of the map, pixels of the page, else the place there. */
+  private at(left: number, top: number): Tapped | null {
+    const { scene, fit } = this;
+    if (!scene) return null;
+    const x = (left * fit.pixel - fit.left) / fit.scale;
+    const y = (fit.top - top * fit.pixel) / fit.scale;
+    const reachM = (BESIDE_PX * fit.pixel) / fit.scale;
+    const near = [...this.avatars.values()]
+      .filter(({ own, pose }) => !own && storeyAt(scene.storeys, pose.z) === this.choice.shown)
+      .map((avatar) => ({ avatar, apartM: Math.hypot(avatar.pose.x - x, avatar.pose.y - y) }))
+      .filter(({ apartM }) => apartM < reachM)
+      .sort((a, b) => a.apartM - b.apartM)[0];
+    if (near) return { avatar: near.avatar };
+    const [x0, y0, x1, y1] = scene.bounds;
+    if (x < x0 || x > x1 || y < y0 || y > y1) return null;
+    return { floor: { x, y, z: this.floorM } };
   }
 
   /** Fit the scene into the canvas as large as it is shown, and draw everything that never moves. */

@@ -2,8 +2,9 @@
 
 export class Panel {
   private static readonly all: Panel[] = [];
+  private static readonly others: (() => void)[] = [];
   /** As `style/layout.css` has it. */
-  private readonly narrow = window.matchMedia(
+  private static readonly narrow = window.matchMedia(
     "(max-width: 540px), (max-width: 640px) and (min-height: 481px)",
   );
 
@@ -23,14 +24,25 @@ export class Panel {
     });
   }
 
+  /** Something without a button of its own is closed wherever a panel needs its room. */
+  static alsoClose(close: () => void): void {
+    Panel.others.push(close);
+  }
+
+  /** Close all panels where there is room for one alone. */
+  static makeRoom(): void {
+    if (Panel.narrow.matches) for (const panel of Panel.all) panel.open = false;
+  }
+
   get open(): boolean {
     return !this.panel.hidden;
   }
 
   set open(open: boolean) {
     if (open === this.open) return;
-    if (open && this.narrow.matches) {
+    if (open && Panel.narrow.matches) {
       for (const other of Panel.all) if (other !== this) other.open = false;
+      for (const close of Panel.others) close();
     }
     this.panel.hidden = !open;
     this.button.setAttribute("aria-expanded", String(open));

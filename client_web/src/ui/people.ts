@@ -16,6 +16,7 @@ export class PeopleList {
     private readonly choose: (id: number) => void,
     private readonly open: (id: number, name: string) => void,
     private readonly isMuted: (name: string) => boolean,
+    private readonly openedId: () => number | null,
   ) {
     this.list.append(this.groups.person.details, this.groups.actor.details);
     this.find.addEventListener("input", () => {
@@ -34,7 +35,8 @@ export class PeopleList {
 
   /** Costs little when nobody came or went. */
   update(avatars: ReadonlyMap<number, Avatar>, chosenId: number | null): void {
-    const key = `${[...avatars.keys()].join()}:${chosenId ?? ""}`;
+    const away = [...avatars.values()].filter((avatar) => avatar.away).map(({ id }) => id);
+    const key = [[...avatars.keys()], away, [chosenId, this.openedId()]].join(";");
     if (key === this.shown) return;
     this.shown = key;
     const focused = document.activeElement?.getAttribute("data-id");
@@ -53,7 +55,7 @@ export class PeopleList {
     if (focused) this.list.querySelector<HTMLElement>(`[data-id="${focused}"]`)?.focus();
   }
 
-  private row({ id, kind, name, own }: Avatar, chosenId: number | null): HTMLElement {
+  private row({ id, kind, name, own, away }: Avatar, chosenId: number | null): HTMLElement {
     const muted = !own && this.isMuted(name);
     const row = element("li", { class: own ? "own" : muted ? `${kind} muted` : kind });
     if (kind === "actor") {
@@ -70,16 +72,16 @@ export class PeopleList {
     } else if (own) {
       row.append(element("span", {}, name), element("small", {}, "you"));
     } else {
-      const button = element("input", {
-        type: "button",
-        "data-id": String(id),
-        value: muted ? "muted" : "mute, report",
-        "aria-label": `${name}: mute or report`,
-      });
+      const button = element(
+        "button",
+        { type: "button", "data-id": String(id), "aria-pressed": String(id === this.openedId()) },
+        element("span", {}, name),
+        element("small", {}, [away ? "away" : "", muted ? "muted" : ""].filter(Boolean).join(", ")),
+      );
       button.addEventListener("click", () => {
         this.open(id, name);
       });
-      row.append(element("span", {}, name), button);
+      row.append(button);
     }
     return row;
   }

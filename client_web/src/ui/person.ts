@@ -1,7 +1,8 @@
-/** The panel of another person: hear them no more, or report them to those who look after the place. */
+/** The card of another person: find, follow and greet them, mute or report them. */
 
 import { MAX_CHAT_CHARS } from "../net/codes";
 import { byId, element } from "./dom";
+import { Panel } from "./panels";
 
 export interface SaidLine {
   line: number;
@@ -9,6 +10,10 @@ export interface SaidLine {
 }
 
 export interface PersonWishes {
+  find(id: number): void;
+  /** Walk after somebody, or after nobody any more. */
+  follow(id: number | null): void;
+  wave(id: number): void;
   mute(id: number, name: string, muted: boolean): void;
   /** False if there is no connection. */
   report(id: number, line: number | null, text: string): boolean;
@@ -21,8 +26,11 @@ const SHOWN_CHARS = 40;
 export class PersonPanel {
   private readonly panel = byId("person", HTMLElement);
   private readonly name = byId("person-name", HTMLElement);
+  private readonly where = byId("person-where", HTMLElement);
+  private readonly follow = byId("person-follow", HTMLButtonElement);
   private readonly mute = byId("person-mute", HTMLButtonElement);
   private readonly form = byId("person-form", HTMLFormElement);
+  private readonly report = byId("person-report", HTMLDetailsElement);
   private readonly why = byId("person-why", HTMLSelectElement);
   private readonly line = byId("person-line", HTMLSelectElement);
   private readonly text = byId("person-text", HTMLInputElement);
@@ -31,11 +39,24 @@ export class PersonPanel {
   private opener: Element | null = null;
 
   constructor(private readonly wishes: PersonWishes) {
+    Panel.alsoClose(() => {
+      this.close();
+    });
     byId("person-close", HTMLButtonElement).addEventListener("click", () => {
       this.close();
     });
     this.panel.addEventListener("keydown", (event) => {
       if (event.key === "Escape") this.close();
+    });
+    byId("person-find", HTMLButtonElement).addEventListener("click", () => {
+      if (this.shown) wishes.find(this.shown.id);
+    });
+    byId("person-wave", HTMLButtonElement).addEventListener("click", () => {
+      if (this.shown) wishes.wave(this.shown.id);
+    });
+    this.follow.addEventListener("click", () => {
+      const follows = this.follow.getAttribute("aria-pressed") === "true";
+      if (this.shown) wishes.follow(follows ? null : this.shown.id);
     });
     this.mute.addEventListener("click", () => {
       if (!this.shown) return;
@@ -49,13 +70,26 @@ export class PersonPanel {
     });
   }
 
+  /** The one whose card is open; null for nobody. */
+  get id(): number | null {
+    return this.shown?.id ?? null;
+  }
+
+  /** Say where somebody is, in words, and whether they are followed. */
+  show(where: string, followed: boolean): void {
+    if (this.where.textContent !== where) this.where.textContent = where;
+    this.follow.setAttribute("aria-pressed", String(followed));
+  }
+
   open(id: number, name: string): void {
+    Panel.makeRoom();
     this.opener = document.activeElement;
     this.shown = { id, name };
     this.name.textContent = name;
     this.text.value = "";
     this.text.maxLength = MAX_CHAT_CHARS - this.longestWhy() - 2;
     this.state.textContent = "";
+    this.report.open = false;
     const lines = this.wishes.linesOf(id);
     const options = lines.map(({ line, text }) =>
       element("option", { value: String(line) }, shortened(text)),
@@ -64,7 +98,7 @@ export class PersonPanel {
     byId("person-line-label", HTMLElement).hidden = this.line.hidden = lines.length === 0;
     this.update();
     this.panel.hidden = false;
-    this.mute.focus();
+    this.follow.focus();
   }
 
   /** The server has taken a report, or says why not. */
@@ -72,7 +106,7 @@ export class PersonPanel {
     if (!this.panel.hidden) this.state.textContent = text;
   }
 
-  private close(): void {
+  close(): void {
     this.panel.hidden = true;
     this.shown = null;
     if (this.opener instanceof HTMLElement && this.opener.isConnected) this.opener.focus();
@@ -80,7 +114,7 @@ export class PersonPanel {
 
   private update(): void {
     const muted = this.shown !== null && this.wishes.isMuted(this.shown.name);
-    this.mute.textContent = muted ? "Hear them again" : "Mute for me";
+    this.mute.textContent = muted ? "Unmute" : "Mute for me";
     this.mute.setAttribute("aria-pressed", String(muted));
   }
 

@@ -1,6 +1,6 @@
 /** Sentences for people, made from the codes and arguments of the server in this page's words. */
 
-import type { Arguments, ServerMessage } from "../net/messages";
+import type { Arguments, ServerMessage, Welcome } from "../net/messages";
 
 type Fault = Extract<ServerMessage, { type: "error" }>;
 type Notice = Extract<ServerMessage, { type: "notice" }>;
@@ -85,4 +85,14 @@ function numberOf(given: Arguments, name: string): number | null {
 function textOf(given: Arguments, name = "text"): string | null {
   const value = given[name];
   return typeof value === "string" ? value : null;
+}
+
+/** The first line for somebody who comes in. */
+export function greetingOf({ name, resumed }: Welcome): string {
+  return resumed ? `Welcome back, ${name}.` : `Welcome, ${name}. See Help for how to get about.`;
+}
+
+/** The first line in another zone. */
+export function arrivalIn({ scene }: Welcome): string {
+  return `You have come to ${scene.name}.`;
 }

@@ -8,6 +8,7 @@ import type { StepRecord } from "../net/steps";
 import { mixAngles, wrapAngle } from "./angles";
 import { type Body, body, solve } from "./body";
 import { CycleAnimation } from "./cycleanimation";
+import { Gesturing } from "./gestures";
 import { copyPose, type Pose } from "./interpolation";
 import { mixPostures, type Posture, posture } from "./posture";
 import { Pointing } from "./pointing";
@@ -49,6 +50,7 @@ export class Animator {
   /** The posture from which the joints were solved. */
   readonly posture: Posture = posture();
   readonly pointing = new Pointing();
+  readonly gesturing = new Gesturing();
   private readonly steps: Timed[] = [];
   private readonly cycle: CycleAnimation;
   private readonly from: Posture = posture();
@@ -118,8 +120,11 @@ export class Animator {
       const part = smooth(1 - this.fadeLeftS / FADE_S);
       mixPostures(this.from, this.posture, part, this.posture);
     }
+    this.gesturing.lean(this.posture, frameS);
     solve(this.posture, this.build, this.body);
-    if (this.pointing.active) this.pointing.apply(this.body, this.posture, this.build, frameS);
+    const { pointing, gesturing } = this;
+    if (pointing.active) pointing.apply(this.body, this.posture, this.build, frameS);
+    if (gesturing.active) gesturing.apply(this.body, this.build, pointing.limb(this.body));
     const { drawn } = this;
     const heading = drawn && this.walksBySteps ? drawn.step.landing.heading : snapshots.heading;
     this.look(heading, frameS);

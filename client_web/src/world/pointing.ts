@@ -84,6 +84,11 @@ export class Pointing {
     return this.target !== null || this.raised > 0;
   }
 
+  /** The arm that points; null while none does. */
+  limb(body: Body): Limb | null {
+    return this.active ? body[this.side].arm : null;
+  }
+
   /** The hand that points, or last did. */
   hand(body: Body): Vector3 {
     return body[this.side].arm.end;

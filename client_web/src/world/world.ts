@@ -4,6 +4,7 @@ import type {
   Doors,
   EntityInfo,
   EntityRecord,
+  GestureName,
   Place,
   Plan,
   SceneData,
@@ -30,6 +31,8 @@ export interface Avatar {
   /** The animation of its body. */
   readonly animator: Animator;
   pose: Pose;
+  /** Whether its person is away: nobody looks through its eyes for now. */
+  away: boolean;
 }
 
 /** The least time that the own steps are drawn behind their usual arrival. */
@@ -115,6 +118,7 @@ export class World {
         own,
         animator,
         pose,
+        away: false,
         interpolator,
       });
       this.point(info.id, info.points_at);
@@ -158,6 +162,17 @@ export class World {
     if (!animator) return;
     const [x, y, z] = target ?? [0, 0, 0];
     animator.pointing.target = target && { x, y, z };
+  }
+
+  /** Somebody makes a gesture; `calm` holds it still. */
+  gesture(id: number, gesture: GestureName, calm: boolean): void {
+    this.avatars_.get(id)?.animator.gesturing.start(gesture, calm);
+  }
+
+  /** The person of an avatar is away from now on, or there again. */
+  away(id: number, away: boolean): void {
+    const avatar = this.avatars_.get(id);
+    if (avatar) avatar.away = away;
   }
 
   /** An avatar has another body from now on; the steps of its new legs come next. */

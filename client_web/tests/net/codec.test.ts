@@ -16,8 +16,8 @@ const given = (fields: object): object =>
 
 describe("codes", () => {
   it("are those of the server", () => {
-    const { ClientCode, ServerCode, Reason, Outcome, CloseCode } = codes;
-    expect({ ClientCode, ServerCode, Reason, Outcome, CloseCode }).toEqual(wire.codes);
+    const { ClientCode, ServerCode, Reason, Outcome, Gesture, CloseCode } = codes;
+    expect({ ClientCode, ServerCode, Reason, Outcome, Gesture, CloseCode }).toEqual(wire.codes);
     expect(codes.VERSION).toBe(wire.version);
     const { MAX_NAME_CHARS, MAX_CHAT_CHARS } = codes;
     expect({ MAX_NAME_CHARS, MAX_CHAT_CHARS }).toEqual(wire.limits);

@@ -107,6 +107,28 @@ describe("pings", () => {
   });
 });
 
+describe("an older server", () => {
+  it("is greeted again in the version before, and sent nothing that it does not know", () => {
+    connection.join({ name: "Ann", resume: null, operator: null, admission: null });
+    newest().accept();
+    newest().end(CloseCode.UNSUPPORTED_VERSION);
+    newest().accept();
+    expect(sockets.length).toBe(2);
+    expect(newest().received[0]?.[1]["version"]).toBe(VERSION - 1);
+    newest().say(ServerCode.WELCOME, { ...WELCOME, version: VERSION - 1 });
+    expect(connection.send({ type: "gesture", gesture: 1 })).toBe(false);
+    expect(connection.send({ type: "chat", text: "hi" })).toBe(true);
+  });
+
+  it("that speaks neither version is left", () => {
+    connection.join({ name: "Ann", resume: null, operator: null, admission: null });
+    for (let k = 0; k < 2; k++) newest().end(CloseCode.UNSUPPORTED_VERSION);
+    vi.advanceTimersByTime(60_000);
+    expect(sockets).toHaveLength(2);
+    expect(connection.state.phase).toBe("refused");
+  });
+});
+
 describe("a later version of the server's messages", () => {
   it("is no fault: unknown codes, fields and names are passed over", () => {
     connection.join({ name: "Ann", resume: null, operator: null, admission: null });
@@ -157,7 +179,7 @@ describe("a lost connection", () => {
     expect(sockets).toHaveLength(2);
   });
 
-  it.each([[CloseCode.SERVER_FULL], [CloseCode.UNSUPPORTED_VERSION], [CloseCode.REPLACED]])(
+  it.each([[CloseCode.SERVER_FULL], [CloseCode.REPLACED]])(
     "stays lost after close code %i",
     (code) => {
       comeIn();

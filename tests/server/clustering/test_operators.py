@@ -20,6 +20,7 @@ from esplanade.protocol.messages import (
     Hide,
     MutePerson,
     Notice,
+    Report,
     ServerMessage,
     Travel,
 )
@@ -54,6 +55,27 @@ async def notice(client: Client, code: NoticeCode) -> Notice:
         said = await client.until(Notice)
         if said.notice is code:
             return said
+
+
+async def reports(moderator: Operator) -> list[dict[str, Any]]:
+    """The reports in the inbox of a zone, as soon as there are any."""
+    async with asyncio.timeout(PATIENCE_S):
+        while True:
+            found = await settled(lambda: moderator.get("/reports"))
+            if found["reports"]:
+                return list(found["reports"])
+            await asyncio.sleep(0.1)
+
+
+async def _until(ask: Callable[[], Awaitable[Any]], holds: Callable[[Any], bool]) -> None:
+    """Ask again until it holds."""
+    async with asyncio.timeout(PATIENCE_S):
+        while not holds(await ask()):  # noqa: ASYNC110 - nothing tells of it
+            await asyncio.sleep(0.1)
+
+
+async def _of_world(asked: Operator, name: str) -> Any:
+    return (await settled(lambda: asked.get("/world")))[name]
 
 
 def weight(values: dict[str, Any]) -> float:
@@ -101,6 +123,42 @@ async def test_what_is_set_holds_after_another_host_has_taken_the_zone(at_town: 
     words = ["op", "audit", "--command", "revert", "--store", at_town.database]
     listed = await asyncio.to_thread(said, words)
     assert "revert" in listed.output
+
+
+async def test_all_that_goes_on_goes_on_at_another_host(at_town: Cluster) -> None:
+    olga = at_town.operator("admin", zone="yard")
+    risk = {"op": "set_parameters", "scope": "world", "values": {"risk_weight": 4}}
+    ramp = {**risk, "values": {"foresight_s": 4.0}, "over_s": 3600.0}
+    for command in (
+        {**risk, "guard": {"figure": "people", "above": 500}},
+        {"op": "schedule", "when": {"after_s": 3600}, "commands": [risk]},
+        {"op": "pace", "factor": 0.5},
+        {"op": "move_door", "door": "shed", "open": False},
+        ramp,
+    ):
+        status, answer = await olga.send(command)
+        assert status == 200, answer
+    _, before = await olga.get("/schedules")
+    at_first = (await olga.values("yard/actor-1"))["foresight_s"]
+    epoch = at_town.owner("yard")[1]
+    at_town.owning("yard").kill()
+    await at_town.taken_over("yard", epoch)
+    world = await settled(lambda: olga.get("/world"))
+    assert world["pace"]["factor"] == 0.5
+    await _until(lambda: _of_world(olga, "doors"), {"shed": False}.__eq__)
+    _, after = await olga.get("/schedules")
+    assert (after["schedules"], after["guards"]) == (before["schedules"], before["guards"])
+    assert weight(await olga.values("yard/actor-1")) == 4.0
+    await _until(lambda: olga.values("yard/actor-1"), lambda now: now["foresight_s"] != at_first)
+    for command in (
+        {"op": "revert", "change": answer["command"]},
+        {"op": "revert"},
+        {"op": "pace", "factor": 1.0},
+        {"op": "move_door", "door": "shed", "open": True},
+        {"op": "cancel_schedule", "id": after["schedules"][0]["id"]},
+    ):
+        status, answer = await olga.send(command)
+        assert status == 200, answer
 
 
 async def test_an_owner_that_was_frozen_carries_out_no_command(at_town: Cluster) -> None:
@@ -232,7 +290,12 @@ async def test_people_are_told_muted_and_sent_out(at_town: Cluster) -> None:
         assert (await notice(ben, NoticeCode.MUTED)).arguments["seconds"] == 600
         await ben.send(ChatLine(text="I do not"))
         assert (await ben.until(Error)).error is ErrorCode.MUTED
-        # A mute holds at another gateway and at another host.
+        await ann.send(Report(id=ben.id, text="shouts at me"))
+        assert (await notice(ann, NoticeCode.REPORT_TAKEN)).arguments == {"id": ben.id}
+        (report,) = await reports(mona)
+        assert await reports(Operator(mona.port, mona.token, "hall")) == [report]
+        assert (report["name"], report["text"], report["state"]) == ("Ben", "shouts at me", "open")
+        # A mute and a report hold at another gateway and at another host.
         epoch = at_town.owner("yard")[1]
         at_town.owning("yard").kill()
         await at_town.taken_over("yard", epoch)
@@ -240,6 +303,10 @@ async def test_people_are_told_muted_and_sent_out(at_town: Cluster) -> None:
         assert ben.welcome is not None
         async with back(east.port, ben.welcome.resume) as again:
             assert again.id == ben.id
+            assert await reports(mona) == [report]
+            settle = {"op": "settle_report", "report": report["id"], "note": "talked to Ben"}
+            await settled(lambda: mona.send(settle))
+            assert (await mona.get("/reports"))[1]["reports"][0]["state"] == "done"
             await again.send(ChatLine(text="nor here"))
             assert (await again.until(Error)).error is ErrorCode.MUTED
             await ann.send(ChatLine(text="thank you"))

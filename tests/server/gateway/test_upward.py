@@ -4,7 +4,7 @@ from typing import Any, cast
 
 import pytest
 
-from esplanade.protocol.messages import WalkTo
+from esplanade.protocol.messages import Report, WalkTo
 from esplanade.server.cluster.person_record import PersonRecord
 from esplanade.server.gateway.frame_clock import FrameClock
 from esplanade.server.gateway.occupant import Occupant
@@ -69,6 +69,17 @@ def test_lines_that_nobody_takes_are_refused_in_the_end(ann: Occupant) -> None:
     assert all(upward.say(ann, str(k)) for k in range(MOST_WAITING))
     assert not upward.say(ann, "one more")
     assert upward.left_out == 1
+
+
+def test_a_report_goes_out_once_and_few_wait(ann: Occupant) -> None:
+    upward = Upward("east")
+    report = Report(id=8, text="is rude")
+    assert all(upward.report(ann, report) for _ in range(MOST_WAITING))
+    assert not upward.report(ann, report)
+    batch = upward.batch(EPOCH, [], 0.0)
+    assert batch is not None
+    assert batch.reports == [(7, 2, report)] * MOST_WAITING
+    assert upward.batch(EPOCH, [], 0.0) is None
 
 
 def test_a_clock_goes_by_the_frame_that_came_quickest() -> None:

@@ -23,6 +23,7 @@ from esplanade.server.moderation.state import ModerationState
 from esplanade.server.net.chat_gate import ChatGate
 from esplanade.server.net.door_commands import DoorCommands
 from esplanade.server.net.pending_inputs import PendingInputs
+from esplanade.server.net.reporting import Reporting
 from esplanade.server.net.route_requests import RouteRequests
 from esplanade.server.net.search_budget import SearchBudget
 from esplanade.server.net.waiting_lines import WaitingLines
@@ -142,6 +143,7 @@ class Hosted:
             EPOCH,
             WaitingLines(self.moderation, ChatGate(state, [0.0]), lambda _: False, Metrics()),
             DoorCommands(Nobody(), nobody_again),
+            Reporting(state, self.moderation),
         )
         self._numbers = dict.fromkeys(("east", "west"), 0)
 

@@ -1,6 +1,7 @@
 """Batches and answers go over the network and come out as they were; anything else is refused."""
 
 from contextlib import suppress
+from dataclasses import replace
 
 import hypothesis.strategies as st
 import msgpack
@@ -8,7 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 
-from esplanade.protocol.messages import WalkTo
+from esplanade.protocol.messages import Report, WalkTo
 from esplanade.server.link.answers import (
     MOST_BYTES,
     Answer,
@@ -41,6 +42,9 @@ def full_batch() -> Batch:
         [(8, 1, "gate", True)],
         [(12, 1)],
         [(7, 2, [8, 9]), (8, 1, [])],
+        [(7, 2, Report(id=8, line=2**40, text="is rude")), (8, 1, Report(id=9, text="?"))],
+        [(7, 2, True)],
+        [(8, 1, 3)],
     )
 
 
@@ -50,6 +54,15 @@ def test_a_batch_comes_out_as_it_was() -> None:
     assert again.movements.tobytes() == batch.movements.tobytes()
     for name in Batch.__dataclass_fields__.keys() - {"movements"}:
         assert getattr(again, name) == getattr(batch, name), name
+
+
+def test_older_programs_read_batches_without_anything_of_newer_ones() -> None:
+    older = replace(full_batch(), reports=[], presences=[], gestures=[])
+    assert msgpack.unpackb(encode_batch(older)[24 + older.movements.nbytes :])[9:] == []
+    newer = encode_batch(full_batch())
+    rest = msgpack.unpackb(newer[24 + older.movements.nbytes :])
+    rest[9]["of a later version"] = [1]
+    assert decode_batch(newer[: 24 + older.movements.nbytes] + msgpack.packb(rest)).gestures
 
 
 def test_an_empty_batch_is_small() -> None:

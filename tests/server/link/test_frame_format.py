@@ -77,6 +77,13 @@ def test_everything_in_a_frame_is_carried() -> None:
     assert not same(bare, frame)
 
 
+def test_gestures_and_who_is_away_are_carried() -> None:
+    frame = full_frame()
+    events = replace(frame.events, gestures={7: 1}, away={8: True, 9: False})
+    decoded = decode_frame(encode_frame(replace(frame, events=events)))
+    assert decoded.events == events
+
+
 def test_the_bytes_are_those_of_this_version() -> None:
     """Hosts and gateways of one release read each other: other bytes are another version."""
     body = encode_frame(replace(full_frame(), steps=new_step_records(0)))

@@ -39,6 +39,19 @@ def test_a_whole_state_says_all_that_frames_have_said() -> None:
     assert same(again.whole(), whole)
 
 
+def test_a_whole_state_says_who_is_away() -> None:
+    host, gateway = WholeState(), WholeState()
+    first = full_frame()
+    first = replace(first, events=replace(first.events, away={8: True}))
+    for state in (host, gateway):
+        state.take(first)
+    assert host.whole().events.away == {8: True}
+    assert gateway.difference(host.whole()).events.away == {}
+    back = replace(first, entered=[], events=replace(first.events, away={8: False}))
+    host.take(back)
+    assert gateway.difference(host.whole()).events.away == {8: False}
+
+
 @pytest.mark.parametrize("missed_from", [1, 25, 140])
 def test_who_missed_frames_comes_to_know_the_same(missed_from: int) -> None:
     population = ScriptedPopulation(TICK_S)

@@ -141,6 +141,26 @@ async def test_decisions_of_other_processes_are_taken_in(store: SqlStore) -> Non
     assert sent_out == [(numbers[0], None)]
 
 
+async def test_reports_to_other_processes_are_taken_in(store: SqlStore) -> None:
+    east, west = await opened(store), await opened(store)
+    east.number_apart(0, 2)
+    west.number_apart(1, 2)
+    numbers = east.inbox.next_id(), west.inbox.next_id()
+    assert len({*numbers}) == 2
+    for one, number in zip((east, west), numbers, strict=True):
+        assert one.report(report(number), "there")
+        await one.later.flush()
+    for one in (east, west):
+        await one.look()
+        assert (sorted(each.id for each in one.inbox), one.inbox.open) == (sorted(numbers), 2)
+    assert {east.inbox.next_id(), west.inbox.next_id()}.isdisjoint(numbers)
+    await west.decide({f"report:{numbers[0]}": {"state": "done"}}, [], "mona")
+    await east.look()
+    settled = east.inbox.get(numbers[0])
+    assert settled is not None
+    assert (settled.state, settled.settled_by, east.inbox.open) == ("done", "mona", 1)
+
+
 async def test_a_look_that_a_decision_overtakes_drops_nothing(store: SqlStore) -> None:
     held = await opened(store)
     looking = asyncio.create_task(held.look())

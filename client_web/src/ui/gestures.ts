@@ -1,0 +1,58 @@
+/** The menu of gestures, and the captions that tell in words what gestures show. */
+
+import type { GestureName } from "../net/messages";
+import { byId, element } from "./dom";
+import { Panel } from "./panels";
+
+/** How each is called, and told of others and of oneself. */
+const WORDS: Record<GestureName, readonly [name: string, they: string, you: string]> = {
+  wave: ["Wave", "waves", "wave"],
+  nod: ["Nod", "nods", "nod"],
+  point: ["Point", "points", "point"],
+  clap: ["Clap", "claps", "clap"],
+  dance: ["Dance", "dances", "dance"],
+  raise_hand: ["Raise hand", "raises a hand", "raise a hand"],
+};
+
+export class GestureMenu {
+  private readonly toggle = byId("gestures-toggle", HTMLButtonElement);
+  private readonly menu = byId("gestures", HTMLElement);
+  private readonly captions = byId("captions", HTMLElement);
+  private readonly panel = new Panel(this.toggle, this.menu);
+
+  /** `make` is called with the number of the gesture that is chosen. */
+  constructor(gestures: ReadonlyMap<number, GestureName>, make: (gesture: number) => void) {
+    for (const [number, name] of gestures) {
+      const button = element(
+        "button",
+        { type: "button" },
+        element("kbd", { "aria-hidden": "true" }, String(number)),
+        ` ${WORDS[name][0]}`,
+      );
+      button.addEventListener("click", () => {
+        make(number);
+      });
+      this.menu.append(button);
+    }
+  }
+
+  /** Offer gestures, or hide them where the server knows none. */
+  offer(known: boolean): void {
+    this.toggle.hidden = !known;
+    if (!known) this.panel.open = false;
+  }
+
+  /** Open the menu by a key, with its first gesture under the next one; or close it. */
+  flip(): void {
+    if (this.toggle.hidden) return;
+    this.panel.open = !this.panel.open;
+    if (this.panel.open) this.menu.querySelector("button")?.focus();
+  }
+
+  /** Tell those who do not see it that somebody makes a gesture; returns the words for a label. */
+  tell(name: string, own: boolean, gesture: GestureName): string {
+    const [, they, you] = WORDS[gesture];
+    this.captions.textContent = own ? `You ${you}.` : `${name} ${they}.`;
+    return they;
+  }
+}
