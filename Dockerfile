@@ -8,7 +8,7 @@ COPY . .
 # Versions are those of uv.lock: of what builds the wheel, and of what it runs on.
 RUN UV_PROJECT_ENVIRONMENT=/opt/build uv sync --locked --inexact --no-install-project --extra client \
   && uv build --wheel --no-build-isolation --python /opt/build/bin/python --out-dir /opt/wheel
-RUN UV_PROJECT_ENVIRONMENT=/opt/esplanade uv sync --locked --no-install-project --extra postgresql --extra cluster \
+RUN UV_PROJECT_ENVIRONMENT=/opt/esplanade uv sync --locked --no-install-project --extra postgresql --extra cluster --extra record \
   && uv pip install --python /opt/esplanade/bin/python --no-deps /opt/wheel/*.whl
 
 FROM python:3.12-slim

@@ -278,8 +278,8 @@ class PotentialPool:
             "changes": self._changes,
             "keys": [None if key is None else plain_key(key) for key in self._keys],
             "origins": [
-                None if each is None else [plain_key(each[0]), list(each[1])]
-                for each in self._origins
+                None if each is None or key is None else [plain_key(each[0]), list(each[1])]
+                for key, each in zip(self._keys, self._origins, strict=True)
             ],
             "users": list(self._users),
             "idle": list(self._idle),

@@ -16,12 +16,13 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
+import zstandard
 from mcap.reader import make_reader
 
 from esplanade.actors import Population
 from esplanade.server.building import build_world
 from esplanade.server.loading import load_scene
-from esplanade.server.recording.channels import CHECKPOINTS
+from esplanade.server.recording.channels import CHECKPOINTS, INPUTS
 from esplanade.server.recording.head import Built, Head
 from esplanade.server.recording.reader import Recording
 from esplanade.server.recording.zone_recording import ZoneRecording
@@ -135,6 +136,9 @@ def _bytes(path: Path, seconds: int) -> None:
     with path.open("rb") as file:
         summary = make_reader(file).get_summary()
     assert summary is not None
+    with path.open("rb") as file:
+        found = make_reader(file).iter_messages([INPUTS])
+        inputs = sum(len(zstandard.compress(message.data)) for _, _, message in found)
     states = {k for k, each in summary.channels.items() if each.topic == CHECKPOINTS}
     sizes = [
         (
@@ -146,10 +150,11 @@ def _bytes(path: Path, seconds: int) -> None:
     without = [size for size, has_state in sizes if not has_state]
     with_state = [size for size, has_state in sizes if has_state]
     usual, hour = float(np.mean(without)), 3600.0 / seconds
+    state = float(np.median(with_state)) - usual
     print(
-        f"  file                 {path.stat().st_size * hour / 1e6:.2f} MB/h: inputs and digests "
-        f"{3600.0 * usual / 1e6:.2f} MB/h, states {np.median(with_state) - usual:.0f} bytes each, "
-        f"{360.0 * (np.median(with_state) - usual) / 1e6:.2f} MB/h"
+        f"  file                 {path.stat().st_size * hour / 1e6:.2f} MB/h: inputs "
+        f"{inputs * hour / 1e6:.2f}, with digests and chunks {3600.0 * usual / 1e6:.2f}; states "
+        f"{360.0 * state / 1e6:.2f}, each {state:.0f} bytes"
     )
 
 

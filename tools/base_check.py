@@ -16,9 +16,12 @@ from typing import Final
 
 from esplanade import cli
 
-EXTRAS: Final = ("DracoPy", "ezdxf", "ifcopenshell", "matplotlib", "PIL", "shapely", "trimesh")
+EXTRAS: Final = (
+    *("DracoPy", "ezdxf", "ifcopenshell", "matplotlib", "mcap", "PIL", "shapely", "trimesh"),
+)
 COMMANDS: Final = (
-    *("serve", "run", "demo", "bots", "evaluate", "scene", "recording", "gait", "op", "completion"),
+    *("serve", "run", "replay", "demo", "bots", "evaluate", "scene", "recording", "gait", "op"),
+    "completion",
 )
 SCENE_COMMANDS: Final = ("check", "render", "import", "export", "turn", "schema")
 
@@ -70,6 +73,8 @@ def main(scene: Path) -> None:
     ):
         told = command_line("scene", *arguments, status=2)
         assert "pip install" in told, told
+    told = command_line("replay", write("world.mcap", ""), status=1)
+    assert "install esplanade[record]" in told, told
     print("a base install runs every command, reads every mesh, and names the extras it lacks")
 
 

@@ -117,6 +117,7 @@ ZONE: Final = Settings(
             **_of_server("limits on clients", "operator_commands", "hide_names"),
             **_of_server("data", "keep_chat", "keep_chat_days"),
         },
+        "data": _of_server("data", "record", "record_names", "record_chat"),
         "logs": _of_server("logs"),
     },
     _check,

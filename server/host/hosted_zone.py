@@ -51,6 +51,7 @@ from esplanade.server.net.schedule import Schedule
 from esplanade.server.net.search_budget import SearchBudget
 from esplanade.server.net.waiting_lines import WaitingLines
 from esplanade.server.net.walk_outs import WalkOuts
+from esplanade.server.recording.keeping import recorded
 from esplanade.server.store.store import Store, StoreError
 from esplanade.server.watching import watch_routes, watch_world
 from esplanade.server.world.pace import PaceState
@@ -273,14 +274,16 @@ async def hosted_zone(
             moderation,
             live.tap,
         )
+        ticker.recording = await stack.enter_async_context(
+            recorded(settings, world, zone.name, metrics, bulletin)
+        )
         sender = FrameSender(broker, subjects, zone.name, ticker.whole)
         digest = digest_of(zone.loaded.scene)
         checkpoints = Checkpointing(world, parts, store, claim, digest, packing)
         if CONSOLE not in found.parts:
             # Recovery finds the commands after a checkpoint by the place that it has in the audit.
             await checkpoints.write()
-        _watch(metrics, batches=batches, sender=sender, desk=desk, checkpoints=checkpoints)
-        metrics.total("renewals_failed", "Renewals without an answer", lambda: renewal.failures)
+        _watch(metrics, renewal, batches, sender=sender, desk=desk, checkpoints=checkpoints)
         yield HostedZone(
             world=world,
             tenure=tenure,
@@ -318,13 +321,15 @@ def _tell_of_pace(schedule: Schedule, world: Zone, people: HostedPeople, desk: S
 
 def _watch(
     metrics: Metrics,
-    *,
+    renewal: Renewal,
     batches: GatewayBatches,
+    *,
     sender: FrameSender,
     desk: SeatDesk,
     checkpoints: Checkpointing,
 ) -> None:
     """Tell in the metrics how a host and the others understand each other."""
+    metrics.total("renewals_failed", "Renewals without an answer", lambda: renewal.failures)
     refused = batches.refused
     metrics.total(
         "inputs_refused",

@@ -4,7 +4,7 @@ import asyncio
 from collections.abc import Sequence
 from dataclasses import replace
 from time import perf_counter
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import structlog
 
@@ -30,6 +30,9 @@ from esplanade.server.world.zone import Zone
 
 ALIVE_S: Final = 0.4
 """A world that stands is told of so often, so that gateways know that its host is there."""
+
+if TYPE_CHECKING:
+    from esplanade.server.recording.zone_recording import ZoneRecording
 
 log = structlog.get_logger(__name__)
 
@@ -66,6 +69,8 @@ class HostTicker:
         self._console = console
         self._moderation = moderation
         self._tap = tap
+        self.recording: ZoneRecording | None = None
+        """Where the ticks go from which a replay runs them again."""
         self._known = WholeState()
         self._known.begin_with_doors(world.doors.states())
         self._told = world.tick
@@ -151,6 +156,8 @@ class HostTicker:
         seconds = perf_counter() - start
         self._metrics.tick_took(seconds, self._world.times.seconds)
         self._tap.take(frame, seconds, self._schedule.late_ticks)
+        if self.recording is not None:
+            self.recording.take(frame, inputs)
 
     async def _send(self, sender: FrameSender, frame: Frame) -> None:
         key = FrameKey(self._renewal.tenure.claim.epoch, frame.tick)

@@ -1,6 +1,7 @@
 """Keeps the recording of a zone that is served."""
 
 import asyncio
+import re
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from typing import TYPE_CHECKING
@@ -41,8 +42,9 @@ async def recorded(
         from esplanade.server.recording.head import Built, Head  # noqa: PLC0415
         from esplanade.server.recording.zone_recording import ZoneRecording  # noqa: PLC0415
     except ModuleNotFoundError as error:
-        raise LoadingError(f"record: it needs {error.name}: install esplanade[record]") from None
-    path = free_path(settings.record / f"{name or zone.scene.name}.mcap")
+        package = (error.name or "").partition(".")[0]
+        raise LoadingError(f"record: it needs {package}: install esplanade[record]") from None
+    path = free_path(settings.record / f"{_as_file(name or zone.scene.name)}.mcap")
 
     def ended(fault: Ended) -> None:
         log.error("the zone is not recorded any more", code=fault.code, why=fault.text)
@@ -69,6 +71,11 @@ async def recorded(
         yield recording
     finally:
         await asyncio.get_running_loop().run_in_executor(None, recording.close)
+
+
+def _as_file(name: str) -> str:
+    """A name without what no name of a file should have."""
+    return re.sub(r"[^\w.-]+", "-", name).strip("-.") or "zone"
 
 
 def _watch(recording: "ZoneRecording", metrics: Metrics) -> None:

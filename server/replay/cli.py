@@ -18,7 +18,8 @@ def run(options: Namespace) -> int:
         from esplanade.server.recording.reader import Recording  # noqa: PLC0415
         from esplanade.server.replay import running  # noqa: PLC0415
     except ModuleNotFoundError as error:
-        raise CommandError(f"recordings need {error.name}: install esplanade[record]") from None
+        package = (error.name or "").partition(".")[0]
+        raise CommandError(f"recordings need {package}: install esplanade[record]") from None
     with logs.written(OfflineSettings(log_level="warning")):
         try:
             with Recording(options.file) as recording:

@@ -79,7 +79,7 @@ class ExactState:
             },
             "chance": chance_as_text(p.spawning.random.bit_generator.state),
             "contacts": {
-                "counts": [p.contacts.actor_person, p.contacts.actor_actor],
+                "counts": [int(p.contacts.actor_person), int(p.contacts.actor_actor)],
                 "touching": p.contacts.touching,
             },
             "feet": p.feet.save(),

@@ -32,11 +32,11 @@ _COLUMNS: Final = (
     "speeds",
     "reasons",
     "radii",
+    "away",
     "scales",
     "strides",
     "legs_m",
     "statures_m",
-    "away",
 )
 """The columns of which an avatar has a row each, but for its name."""
 
@@ -188,7 +188,7 @@ class State:
         return {
             "slots": live,
             **{name: getattr(self, name)[live] for name in _COLUMNS},
-            "free": np.array(self._free, dtype=np.int32),
+            "free": list(self._free),
             "arrived": self._arrived,
             "id_blocks": [[self._next_id, self._ids_end], *map(list, self._more_ids)],
         }

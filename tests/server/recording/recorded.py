@@ -13,6 +13,7 @@ from mcap.writer import CompressionType, Writer
 from esplanade.server.file_thread import Ended
 from esplanade.server.recording.file import _end_chunk
 from esplanade.server.recording.head import Built, Head
+from esplanade.server.recording.reader import Recording
 from esplanade.server.recording.zone_recording import ZoneRecording
 from esplanade.server.world.inputs import (
     Follow,
@@ -102,6 +103,14 @@ def rewritten(
             writer.add_message(topics[channel.topic], found.log_time, told, found.publish_time)
         writer.finish()  # type: ignore[no-untyped-call]
     return to
+
+
+def inputs_of_file(path: Path) -> list[dict[str, Any]]:
+    """All inputs in a recording."""
+    with Recording(path) as recording:
+        return [
+            each for second in recording.seconds() for tick in second.ticks for each in tick.inputs
+        ]
 
 
 def inputs_in(told: Iterable[Iterable[dict[str, Any]]], kind: str) -> list[dict[str, Any]]:

@@ -5,7 +5,7 @@ import resource
 import threading
 from collections import Counter
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import pytest
 from mcap.reader import make_reader
@@ -17,6 +17,16 @@ from esplanade.server.recording.digests import differences, digests
 from esplanade.server.recording.head import Built, Head
 from esplanade.server.recording.reader import Recording
 from esplanade.server.recording.zone_recording import MOST_SECONDS, ZoneRecording
+from esplanade.server.world.inputs import (
+    ActorsDerived,
+    Batch,
+    DoorDerived,
+    Input,
+    PotentialDerived,
+    SetParameters,
+    SteerMany,
+)
+from esplanade.server.world.recorded_inputs import AS_THEY_ARE, IN_OTHER_WORDS
 from tests.patience import PATIENCE_S
 from tests.server.recording.recorded import hall, inputs_in, record
 
@@ -142,6 +152,16 @@ def test_no_recording_is_written_over(recording: Path) -> None:
         ZoneRecording(world.zone, head, recording, print)
     world.population.close()
     assert recording.stat().st_size == size
+
+
+def test_every_input_has_a_kind() -> None:
+    def kinds(of: Any) -> set[Any]:
+        inner = get_args(of)
+        return set().union(*map(kinds, inner)) if inner else {of}
+
+    derived = {DoorDerived, PotentialDerived, ActorsDerived, SteerMany, SetParameters, Batch}
+    assert kinds(Input) == derived | set(AS_THEY_ARE.values())
+    assert len(IN_OTHER_WORDS) == len(derived)
 
 
 def test_digests_name_parts_and_differences_name_fields() -> None:

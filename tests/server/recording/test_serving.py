@@ -15,13 +15,15 @@ from tests.patience import PATIENCE_S
 from tests.server.client import joined
 from tests.server.http import get
 from tests.server.populated import HALL
+from tests.server.recording.recorded import inputs_of_file
 from tests.server.test_process import served
 
 
 @pytest.fixture
 def hall_file(tmp_path: Path) -> Path:
     path = tmp_path / "hall.json"
-    path.write_text(HALL.model_dump_json(exclude_defaults=True))
+    scene = HALL.model_copy(update={"name": "The hall of /../ doors"})
+    path.write_text(scene.model_dump_json(exclude_defaults=True))
     return path
 
 
@@ -66,11 +68,8 @@ async def test_a_world_with_people_runs_again_bit_for_bit(
         await walk(server)
         metrics = server.metrics.exposition().decode()
     assert "esplanade_recording_ended 0.0" in metrics
-    path = tmp_path / "recordings" / "hall.mcap"
-    with Recording(path) as recording:
-        given = [
-            each for second in recording.seconds() for tick in second.ticks for each in tick.inputs
-        ]
+    path = tmp_path / "recordings" / "The-hall-of-..-doors.mcap"
+    given = inputs_of_file(path)
     kinds = {each["kind"] for each in given}
     assert {"join", "follow", "move_door", "door_derived", "potential_derived"} <= kinds
     assert "Narcissus" not in str(given)
@@ -94,7 +93,7 @@ async def test_a_killed_server_leaves_a_recording_up_to_its_last_second(
                 written = float(line.split()[1])
             server.process.kill()
             server.process.wait()
-    path = folder / "hall.mcap"
+    (path,) = folder.glob("*.mcap")
     assert cli.main(["replay", str(path), "--verify"]) == 0
     told = capsys.readouterr().out
     assert "cut off" in told
@@ -117,7 +116,7 @@ async def test_a_world_goes_on_when_its_recording_ends(
         metrics = server.metrics.exposition().decode()
     assert "esplanade_recording_ended 1.0" in metrics
     (event,) = [event for event in events if event["kind"] == "recording"]
-    assert event["arguments"] == {"code": "too_slow", "file": "hall.mcap"}
+    assert event["arguments"] == {"code": "too_slow", "file": "The-hall-of-..-doors.mcap"}
 
 
 async def test_a_folder_that_cannot_be_written_is_said_at_the_start(

@@ -1,5 +1,6 @@
 """`esplanade replay`: all is equal, or the first tick that differs is named with its field."""
 
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -160,6 +161,18 @@ def test_a_file_that_is_no_recording_is_refused(
     path.write_bytes(b"frame,x,y\n1,2,3\n")
     assert replay(path) == 1
     assert "a.mcap: " in capsys.readouterr().err
+
+
+def test_without_the_library_the_extra_is_named(
+    recording: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for name in [each for each in sys.modules if each.partition(".")[0] == "mcap"]:
+        monkeypatch.delitem(sys.modules, name)
+    for name in ("recording.reader", "replay.running"):
+        monkeypatch.delitem(sys.modules, f"esplanade.server.{name}")
+    monkeypatch.setitem(sys.modules, "mcap", None)
+    assert replay(recording) == 1
+    assert "recordings need mcap: install esplanade[record]" in capsys.readouterr().err
 
 
 def test_options_that_do_not_fit_are_refused(recording: Path) -> None:
