@@ -96,8 +96,7 @@ async def connected(
     }
     try:
         settings |= login.settings(tuple(servers))
-        # The library would go on trying for ever here as well.
-        await asyncio.wait_for(client.connect(**settings), CONNECT_S)
+        await _connect(client, settings)
     except (TimeoutError, OSError, NatsError) as error:
         with suppress(TimeoutError, NatsError, OSError):
             async with asyncio.timeout(CLOSE_S):
@@ -112,6 +111,22 @@ async def connected(
         ending = True
         with suppress(NatsError, OSError):
             await client.close()
+
+
+async def _connect(client: Client, settings: dict[str, Any]) -> None:
+    """Connect, and try no longer than `CONNECT_S`: the library by itself would go on for ever."""
+    connecting = asyncio.create_task(client.connect(**settings))
+    try:
+        await asyncio.wait({connecting}, timeout=CONNECT_S)
+        while not connecting.done():
+            # The library misses a cancellation that comes just as one of its tries fails.
+            connecting.cancel()
+            await asyncio.wait({connecting}, timeout=RETRY_S)
+    finally:
+        connecting.cancel()
+    if connecting.cancelled():
+        raise TimeoutError
+    connecting.result()
 
 
 def broker_for(

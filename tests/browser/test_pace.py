@@ -19,7 +19,10 @@ pytestmark = [pytest.mark.browser, pytest.mark.asyncio(loop_scope="module")]
 SMALL: Final[ViewportSize] = {"width": 480, "height": 360}
 WALK_MPS: Final = 1.4
 BACK_M: Final = 0.02
-"""Nobody who walks on is drawn further back than this from one frame to the next."""
+"""Nobody who walks on is drawn further back than this in a usual frame."""
+
+USUAL_FRAME_S: Final = 1 / 30
+"""In a frame that takes longer, more of a correction that fades is drawn."""
 
 MOST_STILL: Final = 5
 """A page sends no more than this to a world that stands while nobody touches it."""
@@ -131,12 +134,13 @@ def _own_mps(frames: list[dict[str, Any]]) -> float:
 
 
 def _back_m(frames: list[dict[str, Any]]) -> float:
-    """The furthest that the own avatar, which walks to the south, is drawn back in a frame.
+    """The furthest that the own avatar, which walks to the south, is drawn back in a usual frame.
 
     What the page has to take back, since ticks came late on a busy machine, does not count.
     """
     return max(
-        _own(after)[1] - _own(before)[1] - before["correctionM"]
+        (_own(after)[1] - _own(before)[1] - before["correctionM"])
+        / max(1.0, (after["s"] - before["s"]) / USUAL_FRAME_S)
         for before, after in pairwise(frames)
     )
 

@@ -3,12 +3,13 @@
 import asyncio
 import signal
 from collections.abc import AsyncIterator, Callable, Iterator
-from contextlib import AsyncExitStack, asynccontextmanager
+from contextlib import AsyncExitStack, asynccontextmanager, suppress
 from dataclasses import replace
 from itertools import pairwise
 from typing import Final
 
 import pytest
+from nats.aio.client import Client
 
 from esplanade.server.link import broker
 from esplanade.server.link.broker import BrokerError, connected
@@ -125,6 +126,7 @@ async def test_a_broker_that_is_killed_loses_nothing_of_the_state(server: NatsSe
     async with connected([server.address], "host") as ours, receiving(server) as receiver:
         sender = FrameSender(ours, SUBJECTS, "hall", whole)
         await sender.start()
+        begun = asyncio.Event()
 
         async def take() -> None:
             last: int | None = None
@@ -136,30 +138,53 @@ async def test_a_broker_that_is_killed_loses_nothing_of_the_state(server: NatsSe
                 heard.extend(line.number for line in frame.events.chat)
                 last = frame.tick
                 gateway.take(frame)
+                begun.set()
+
+        async def publish(frame: Frame) -> None:
+            host.take(frame)
+            await sender.publish(FrameKey(5, frame.tick), encode_frame(frame))
+            await asyncio.sleep(TICK_S)
 
         taking = asyncio.create_task(take())
+        async with asyncio.timeout(PATIENCE_S):
+            while not begun.is_set():  # what was said before is not told to a gateway that comes
+                await publish(trial.frame())
         for tick in range(160):
             if tick == 40:
                 server.kill()
             if tick == 80:
                 server.start()
-            frame = told(*inputs_of(trial, tick))
-            host.take(frame)
-            await sender.publish(FrameKey(5, frame.tick), encode_frame(frame))
-            await asyncio.sleep(TICK_S)
+            await publish(told(*inputs_of(trial, tick)))
         async with asyncio.timeout(PATIENCE_S):
             while not same(gateway.whole(), host.whole()):
-                # A frame after the gap makes it known.
-                frame = trial.frame()
-                host.take(frame)
-                await sender.publish(FrameKey(5, frame.tick), encode_frame(frame))
-                await asyncio.sleep(TICK_S)
+                await publish(trial.frame())  # a frame after the gap makes it known
         taking.cancel()
         await sender.stop()
     assert sender.left_out > 10
     assert len(said) > 10
     assert heard == said  # those of the gap as well, and none twice
     assert len(host.whole().entered) > 20
+
+
+async def test_a_cancellation_that_the_library_misses_is_said_again(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    class Deaf(Client):
+        async def connect(self, **_: object) -> None:
+            for _ in range(3):
+                with suppress(asyncio.CancelledError):
+                    await asyncio.sleep(PATIENCE_S)
+            await asyncio.sleep(PATIENCE_S)
+
+        async def close(self) -> None:
+            """Nothing was opened."""
+
+    monkeypatch.setattr(broker, "Client", Deaf)
+    monkeypatch.setattr(broker, "CONNECT_S", 0.1)
+    async with asyncio.timeout(PATIENCE_S):
+        with pytest.raises(BrokerError, match="too late"):
+            async with connected(["nats://localhost:1"], "host"):
+                pass
 
 
 async def test_a_gateway_that_comes_late_begins_with_the_whole_state(server: NatsServer) -> None:
