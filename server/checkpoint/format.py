@@ -96,7 +96,7 @@ def _unpacked(code: int, data: bytes) -> Any:
 
 
 def _descr(kind: Any) -> Any:
-    """What numpy makes a type of, with tuples for the lists that they have become."""
+    """The description that numpy makes a type of, with tuples instead of lists."""
     if isinstance(kind, str):
         return kind
     return [(name, _descr(inner), *map(tuple, shape)) for name, inner, *shape in kind]

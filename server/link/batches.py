@@ -98,7 +98,7 @@ class Batch:
     muted: list[tuple[int, int, list[int]]] = field(default_factory=list)
     """Whom persons do not want to hear from now on, all of them."""
     reports: list[tuple[int, int, Report]] = field(default_factory=list)
-    """What persons tell those who look after the world."""
+    """Reports of persons to those who look after the world."""
     presences: list[tuple[int, int, bool]] = field(default_factory=list)
     """Whether persons are away from their screens."""
     gestures: list[tuple[int, int, int]] = field(default_factory=list)

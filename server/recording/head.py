@@ -23,7 +23,7 @@ ABOUT: Final = "esplanade recording"
 SCENE: Final = "scene.json"
 SETTINGS: Final = "settings.json"
 MESH: Final = "mesh"
-"""What the name of an attached mesh begins with, before the suffix of its file."""
+"""The name of an attached mesh begins so; the suffix of its file follows."""
 _LIBRARIES: Final = ("numpy", "numba", "llvmlite", "scipy", "msgpack", "pydantic")
 PROGRAM: Final = ("format", "written by", "sources sha256", "python", *_LIBRARIES)
 """Where any of these differs, nothing says that the same inputs make the same world."""
@@ -154,17 +154,17 @@ def read_head(about: Mapping[str, str], files: Mapping[str, bytes], folder: Path
         built = Built(**{**told, "rules": Rules(**told["rules"])})
     except (ValueError, TypeError, KeyError) as error:
         raise ZoneRecordingError(f"the attachment {SETTINGS} cannot be read: {error}") from None
-    meshes = [name for name in files if name.startswith(MESH)]
     try:
         scene = Scene.model_validate_json(files[SCENE])
     except ValueError as error:
         raise ZoneRecordingError(f"the attachment {SCENE} cannot be read: {error}") from None
     mesh = None
     if scene.mesh is not None:
-        if not meshes:
-            raise ZoneRecordingError(f"the attachment {MESH}{scene.mesh.suffix} is missing")
-        mesh = meshes[0].removeprefix(MESH), files[meshes[0]]
-        path = folder / meshes[0]
+        suffix = scene.mesh.suffix
+        if f"{MESH}{suffix}" not in files:
+            raise ZoneRecordingError(f"the attachment {MESH}{suffix} is missing")
+        mesh = suffix, files[f"{MESH}{suffix}"]
+        path = folder / f"{MESH}{suffix}"
         path.write_bytes(mesh[1])
         scene = scene.model_copy(update={"mesh": path})
     return Head(about, built, scene, mesh)

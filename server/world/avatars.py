@@ -63,6 +63,8 @@ class Avatars:
 
     def away(self, rows: Sequence[int]) -> list[int]:
         """Ids of those in these rows whose people are away."""
+        if not self._away:
+            return []
         return [one for one in self.ids[list(rows)].tolist() if one in self._away]
 
     def remove(self, ids: list[int]) -> None:

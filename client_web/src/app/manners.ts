@@ -1,4 +1,4 @@
-/** What this person does with the body, and whether they are at the page at all. */
+/** Tells the server of the person's gestures, and whether they are at the page at all. */
 
 import { listenToGestureKeys } from "../input/gesturekeys";
 import { isSpoken } from "../net/codec";

@@ -1,4 +1,4 @@
-/** What this person does about others: looks for them, walks after them, greets, mutes, reports. */
+/** Carries out what this person wants of others: find, follow, greet, mute, report. */
 
 import { Gesture } from "../net/codes";
 import type { ClientMessage, EntityInfo } from "../net/messages";

@@ -12,7 +12,7 @@ import { StoreySwitch } from "./storeyswitch";
 /** One may click this far beside somebody, pixels of the page. */
 const BESIDE_PX = 7;
 
-/** What is clicked on the map: somebody, or a place on the shown storey. */
+/** A click on the map means somebody, or a place on the shown storey. */
 export type Tapped = { avatar: Avatar } | { floor: { x: number; y: number; z: number } };
 
 export class Minimap {

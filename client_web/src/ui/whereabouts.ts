@@ -3,7 +3,7 @@
 import { STOREYS_APART_M } from "../world/heights";
 import type { Avatar, World } from "../world/world";
 
-/** So many of the nearest are told of, and places no further away than this. */
+/** The nearest are told of, up to this number, and places up to this distance. */
 const MOST = 6;
 const PLACE_M = 12;
 /** Slower than this nobody comes nearer or goes away, metres a second. */
@@ -39,7 +39,7 @@ export function whereabouts(
   return parts.join(", ");
 }
 
-/** Who and what is around the own avatar, as sentences, the nearest first. */
+/** Sentences about the people and places around the own avatar, the nearest first. */
 export function surroundings({ own, avatars, scene }: World, yaw: number): string {
   if (!own) return "";
   const here = own.pose;

@@ -11,10 +11,12 @@ import pytest
 from mcap.reader import make_reader
 from mcap.stream_reader import StreamReader
 
+from esplanade.planning import Scene
 from esplanade.recordings.writing import WritingError
 from esplanade.server.recording import file as module
 from esplanade.server.recording.digests import differences, digests
-from esplanade.server.recording.head import Built, Head
+from esplanade.server.recording.errors import ZoneRecordingError
+from esplanade.server.recording.head import Built, Head, read_head
 from esplanade.server.recording.reader import Recording
 from esplanade.server.recording.zone_recording import MOST_SECONDS, ZoneRecording
 from esplanade.server.world.inputs import (
@@ -176,3 +178,21 @@ def test_digests_name_parts_and_differences_name_fields() -> None:
     assert "avatars.positions" in differences(one, two)
     assert digests({**one, "names": {1: "Ann"}}) == digests(one)
     world.population.close()
+
+
+def test_a_mesh_comes_along_and_is_written_nowhere_but_into_its_folder(tmp_path: Path) -> None:
+    world = hall()
+    built = Built.of(world.zone, "hall", 3, 0.25)
+    world.population.close()
+    scene = Scene(bounds=(0.0, 0.0, 4.0, 4.0), mesh=Path("hall.obj"))
+    files = Head({}, built, scene, (".obj", b"v 0 0 0")).attachments()
+    folder = tmp_path / "read"
+    (folder / "mesh").mkdir(parents=True)
+    head = read_head({}, files, folder)
+    assert head.scene.mesh == folder / "mesh.obj"
+    assert head.scene.mesh.read_bytes() == b"v 0 0 0"
+    mesh = files.pop("mesh.obj")
+    outside = {**files, "mesh/../../out.obj": mesh}
+    with pytest.raises(ZoneRecordingError, match=r"mesh\.obj is missing"):
+        read_head({}, outside, folder)
+    assert sorted(each.name for each in tmp_path.rglob("*")) == ["mesh", "mesh.obj", "read"]
