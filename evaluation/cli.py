@@ -46,11 +46,20 @@ def _trips(options: Namespace) -> bool:
         plotting.require_matplotlib()
     rules = rules_of(options)
     policies = list(dict.fromkeys(options.policy))
-    trials = plan_trials(list(names), policies, rules, options.episodes, options.seed, settings)
+    trials = plan_trials(
+        list(names),
+        policies,
+        rules,
+        options.episodes,
+        options.seed,
+        settings,
+        options.policy_option,
+    )
     _check_numbers(options.plot_episodes, min(len(trial.episodes) for trial in trials))
     results = walk(trials, options, _files(options, names))
     rows = report.summaries(results, names)
     report.show(console(), rows, reacting=rules.people == "reacting")
+    report.show_faults(console(), results, names)
     if options.json is not None:
         told = {**rules.__dict__, "seed": options.seed, "interpolation": options.interp}
         figures = report.figures(results, rows, names, {**told, **settings})
@@ -101,11 +110,11 @@ def _draw(options: Namespace, results: Sequence[TrialResult], names: Mapping[Sou
         task = shown.add_task("drawing", total=len(chosen))
         for trial, number in chosen:
             name = names[trial.source]
-            stem = f"{name.replace('/', '_')}-{trial.policy}-{number:03d}"
+            stem = f"{name.replace('/', '_')}-{trial.label}-{number:03d}"
             (episode,) = (e for e in trial.episodes if e.number == number)
             plotting.draw_episode(
                 options.plots / f"{stem}.{options.picture or 'png'}",
-                f"{name}, {trial.policy}, episode {number}",
+                f"{name}, {trial.label}, episode {number}",
                 trial.source.environment(trial.rules.tick_s),
                 episode,
                 ready_policy(trial),

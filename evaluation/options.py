@@ -1,5 +1,6 @@
 """The options of `esplanade evaluate`, without anything that evaluates."""
 
+import json
 from argparse import ArgumentTypeError, Namespace
 from typing import Any, Final
 
@@ -16,6 +17,7 @@ from esplanade.commandline.readers import (
 )
 from esplanade.commandline.recording_settings import add_reading, check_reading
 from esplanade.commandline.trajectory_files import check_suffix
+from esplanade.evaluation.policies.outside.naming import address_of, is_outside, label_of
 from esplanade.evaluation.setting_names import NAMES
 
 POLICIES: Final = {
@@ -36,6 +38,7 @@ examples:
   esplanade evaluate eth.csv hotel.csv --policy esplanade discs oracle --json all.json
   esplanade evaluate zara1.csv --episodes 20 --plots failed/
   esplanade evaluate zara1.csv --people reacting --policy esplanade straight discs
+  esplanade evaluate zara1.csv --policy my_policy.py:MyPolicy esplanade --policy-option gain=2
   esplanade evaluate zara1.csv --set risk_weight=12 --set foresight_s=2
   esplanade evaluate eth.csv zara1.csv --prediction --fit
   esplanade evaluate eth.csv zara1.csv --sensitivity --score-cache done.jsonl --plots .
@@ -81,9 +84,20 @@ def parser() -> Parser:
         "--policy",
         metavar="NAME",
         nargs="+",
-        choices=tuple(POLICIES),
+        type=_policy,
         default=["esplanade"],
-        help="; ".join(f"{name}: {summary}" for name, summary in POLICIES.items()),
+        help="; ".join(f"{name}: {summary}" for name, summary in POLICIES.items())
+        + "; FILE.py:CLASS or MODULE:CLASS: one of your own, or NAME of an entry point in the "
+        "group esplanade.policies; tcp://HOST:PORT/NAME: one that listens there",
+    )
+    trips.add_argument(
+        "--policy-option",
+        metavar="NAME=VALUE",
+        type=_policy_option,
+        action="append",
+        default=[],
+        help="a keyword for policies of your own, of one of several as CLASS.NAME=VALUE; VALUE is "
+        "JSON or else text; may be given several times",
     )
     trips.add_argument(
         "--episodes",
@@ -226,6 +240,7 @@ def check(options: Namespace) -> None:
         They do not.
     """
     studies = options.sensitivity or options.tune
+    _check_policies(options)
     if options.trajectories is not None:
         if studies or options.prediction or options.fit:
             raise UsageError("--trajectories is for episodes that are walked once")
@@ -251,6 +266,48 @@ def check(options: Namespace) -> None:
         check_reading(vars(options))
     except ValueError as error:
         raise UsageError(str(error)) from None
+
+
+def _check_policies(options: Namespace) -> None:
+    """Whether policies have different names in tables and files, and take the options."""
+    outside = [name for name in options.policy if is_outside(name)]
+    if options.policy_option and not outside:
+        raise UsageError("--policy-option is for policies of your own: --policy FILE.py:CLASS")
+    for option, _ in options.policy_option:
+        owner = option.rpartition(".")[0]
+        if owner and owner not in map(label_of, outside):
+            raise UsageError(f"--policy-option: there is no policy {owner} among those of --policy")
+    labels = [label_of(name) for name in dict.fromkeys(options.policy)]
+    for label in labels:
+        if labels.count(label) > 1:
+            raise UsageError(f"--policy: two of them are called {label}; give one another name")
+
+
+def _policy(text: str) -> str:
+    if text not in POLICIES and not is_outside(text):
+        raise ArgumentTypeError(
+            f"{text!r} is no policy{suggestion(text, POLICIES)}; there are {', '.join(POLICIES)}, "
+            "and your own as FILE.py:CLASS"
+        )
+    try:
+        if address_of(text) is not None:
+            return text
+    except ValueError as error:
+        raise ArgumentTypeError(str(error)) from None
+    place, _, name = text.rpartition(":")
+    if ":" in text and not (place and name.isidentifier()):
+        raise ArgumentTypeError(f"{text}: a policy of your own is FILE.py:CLASS or MODULE:CLASS")
+    return text
+
+
+def _policy_option(text: str) -> tuple[str, Any]:
+    name, equals, value = text.partition("=")
+    if not equals or not all(part.isidentifier() for part in name.split(".")):
+        raise ArgumentTypeError(f"{text!r} is not NAME=VALUE or CLASS.NAME=VALUE")
+    try:
+        return name, json.loads(value)
+    except ValueError:
+        return name, value
 
 
 def _change(text: str) -> str:

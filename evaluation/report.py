@@ -29,21 +29,24 @@ LINES = (
     ("turn rate, rms rad/s", "turn_rms_radps", 2),
     ("decision, mean ms", "decision_ms", 2),
     ("decision, greatest ms", "decision_max_ms", 1),
+    ("ended by a fault of the policy, %", "faults_percent", 1),
 )
 """The rows of the table: heading, field of `Summary`, digits after the decimal point."""
 OF_REACTING_PEOPLE = frozenset({"displacement_m"})
 """Rows that are left out where people do not react."""
+FAULTS = "faults_percent"
+"""The row that is left out where no policy failed."""
 
 
 def summaries(
     results: Sequence[TrialResult], names: Mapping[Any, str]
 ) -> list[tuple[str, str, Summary]]:
     """Rows of (recording, policy, summary), first for each recording, then for all together."""
-    rows = [(names[r.trial.source], r.trial.policy, summarise(r.scores)) for r in results]
+    rows = [(names[r.trial.source], r.trial.label, summarise(r.scores)) for r in results]
     if len({r.trial.source for r in results}) > 1:
         pooled: dict[str, list[Score]] = {}
         for result in results:
-            pooled.setdefault(result.trial.policy, []).extend(result.scores)
+            pooled.setdefault(result.trial.label, []).extend(result.scores)
         rows += [(POOLED, policy, summarise(scores)) for policy, scores in pooled.items()]
     return rows
 
@@ -64,8 +67,24 @@ def show(
             values = [getattr(summary, field) for summary in shown.values()]
             if field in OF_REACTING_PEOPLE and not reacting:
                 continue
+            if field == FAULTS and not any(values):
+                continue
             table.add_row(heading, *(_cell(value, digits) for value in values))
         console.print(table)
+
+
+def show_faults(console: Console, results: Sequence[TrialResult], names: Mapping[Any, str]) -> None:
+    """Print how policies failed, if any did: the first fault of each on each recording."""
+    for result in results:
+        failed = [score for score in result.scores if score.fault]
+        if failed:
+            trial = result.trial
+            console.print(
+                f"{trial.label} failed in {len(failed)} of {len(result.scores)} episodes of "
+                f"{names[trial.source]}; in episode {failed[0].number} {failed[0].fault}",
+                markup=False,
+                highlight=False,
+            )
 
 
 def figures(
@@ -82,7 +101,7 @@ def figures(
             for name, policy, summary in rows
         ],
         "episodes": [
-            {"recording": names[r.trial.source], "policy": r.trial.policy, **asdict(score)}
+            {"recording": names[r.trial.source], "policy": r.trial.label, **asdict(score)}
             for r in results
             for score in r.scores
         ],

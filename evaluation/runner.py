@@ -90,6 +90,7 @@ def _run_parts(
     if processes == 1:
         for index, part in parts:
             keep(index, part, _run(part, files))
+        _forget()
         return
     spawn = multiprocessing.get_context("spawn")
     with ProcessPoolExecutor(processes, spawn, _leave_interrupts_to_the_parent) as pool:
@@ -108,6 +109,13 @@ def _leave_interrupts_to_the_parent() -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
+def _forget() -> None:
+    """End the policy of the previous chunk."""
+    for policy in _last.values():
+        policy.close()
+    _last.clear()
+
+
 _last: dict[tuple[Source, str, Rules, tuple[tuple[str, Any], ...]], Policy] = {}
 
 
@@ -115,7 +123,7 @@ def _run(part: Trial, files: EpisodeFiles | None = None) -> list[Score]:
     """Run one chunk of episodes; the policy of the previous chunk is reused if it is the same."""
     key = (part.source, part.policy, part.rules, part.settings)
     if key not in _last:
-        _last.clear()
+        _forget()
         _last[key] = ready_policy(part)
     environment = part.source.environment(part.rules.tick_s)
     scores = []

@@ -11,6 +11,7 @@ from types import TracebackType
 from typing import Any, Final, Self, TextIO
 
 from esplanade.evaluation.episodes import Episode
+from esplanade.evaluation.policies.outside.naming import digest_of_policy, is_outside
 from esplanade.evaluation.scores import Score
 from esplanade.evaluation.trials import Source, Trial
 from esplanade.recordings import walls_beside
@@ -149,7 +150,8 @@ def _digest_of(trial: Trial) -> str:
     """A digest of everything that the scores of a trial depend on, except the episode."""
     settings = sorted((name, repr(value)) for name, value in trial.settings)
     rules = sorted(asdict(trial.rules).items())
-    inputs = repr((_code_digest(), _recording_digest(trial.source), trial.policy, rules, settings))
+    code = _code_digest(), digest_of_policy(trial.policy) if is_outside(trial.policy) else ""
+    inputs = repr((code, _recording_digest(trial.source), trial.policy, rules, settings))
     return hashlib.sha256(inputs.encode()).hexdigest()[:16]
 
 

@@ -46,6 +46,8 @@ class Score:
     decisions: int
     decision_ms: float
     decision_max_ms: float
+    fault: str = ""
+    """How the policy failed in the middle of the episode; empty if it did not."""
 
     @property
     def touched(self) -> bool:
@@ -107,8 +109,8 @@ def score(
         jerk_rms_mps3=_rms(jerks),
         turn_rms_radps=_rms(_turns(velocities) / rules.tick_s),
         decisions=len(decide_s),
-        decision_ms=float(np.mean(decide_s)) * 1e3,
-        decision_max_ms=float(np.max(decide_s)) * 1e3,
+        decision_ms=float(np.mean(decide_s or [0.0])) * 1e3,
+        decision_max_ms=float(np.max(decide_s or [0.0])) * 1e3,
     )
 
 
@@ -144,11 +146,13 @@ class Summary:
     turn_rms_radps: float
     decision_ms: float
     decision_max_ms: float
+    faults_percent: float
+    """Episodes that ended because the policy failed."""
 
 
 def summarise(scores: Sequence[Score]) -> Summary:
     """Summarise the scores of at least one episode."""
-    decisions = sum(s.decisions for s in scores)
+    decisions = max(1, sum(s.decisions for s in scores))
     return Summary(
         episodes=len(scores),
         contacts_percent=_percent([s.touched for s in scores]),
@@ -164,6 +168,7 @@ def summarise(scores: Sequence[Score]) -> Summary:
         turn_rms_radps=float(np.mean([s.turn_rms_radps for s in scores])),
         decision_ms=sum(s.decision_ms * s.decisions for s in scores) / decisions,
         decision_max_ms=max(s.decision_max_ms for s in scores),
+        faults_percent=_percent([bool(s.fault) for s in scores]),
     )
 
 

@@ -10,7 +10,14 @@ from numpy.typing import NDArray
 from esplanade.evaluation.contacts import ContactMonitor
 from esplanade.evaluation.episodes import Episode
 from esplanade.evaluation.people import People, ReactingPeople
-from esplanade.evaluation.policies.policy import Observation, Person, Policy, Task
+from esplanade.evaluation.policies.policy import (
+    Observation,
+    Person,
+    Policy,
+    PolicyFaultError,
+    Prescient,
+    Task,
+)
 from esplanade.evaluation.replay import Replay
 from esplanade.evaluation.rules import Rules
 from esplanade.evaluation.scores import Score, score
@@ -52,9 +59,11 @@ def run_episode(
     rules: Rules,
     on_decision: DecisionCallback | None = None,
 ) -> EpisodeResult:
-    """Run a policy on an episode; `on_decision` is called after each of its decisions."""
+    """Run a policy on an episode; `on_decision` is called after each of its decisions.
+
+    The episode ends where the policy fails by a `PolicyFaultError`; its score tells of it.
+    """
     replay = environment.replay
-    policy.reset(Task(rules, replay, episode))
     goal = np.array(episode.goal)
     waypoints = Waypoints(environment.wall_map, goal)
     reacting = ReactingPeople(replay, rules, episode) if rules.people == "reacting" else None
@@ -66,15 +75,21 @@ def run_episode(
     decide_s: list[float] = []
     wall_m = np.inf
     reached = False
-    for n in range(round(rules.time_limit_s / rules.tick_s)):
+    fault = _begun(policy, replay, rules, episode)
+    for n in range(0 if fault else round(rules.time_limit_s / rules.tick_s)):
         tick, position = episode.first_tick + n, trajectory[-1]
         people = sensor.people(n, position)
         observation = Observation(
             n * rules.tick_s, position, velocities[-1], waypoints.next_from(position), people
         )
         began_s = time.perf_counter()
-        wanted = np.asarray(policy.decide(observation), dtype=np.float64)
-        decide_s.append(time.perf_counter() - began_s)
+        try:
+            wanted = np.asarray(policy.decide(observation), dtype=np.float64)
+        except PolicyFaultError as error:
+            fault = f"at {observation.t:.1f} s: {error}"
+            break
+        finally:
+            decide_s.append(time.perf_counter() - began_s)
         if on_decision is not None:
             on_decision(observation, policy)
         if not np.isfinite(wanted).all():
@@ -96,12 +111,24 @@ def run_episode(
             break
     walked = np.array(trajectory)
     result = score(
-        replay, rules, episode, contacts, sensor.pop_ins, walked, np.array(velocities[1:]),
-        wall_m, reached, decide_s,
+        replay, rules, episode, contacts, sensor.pop_ins, walked,
+        np.array(velocities[1:]).reshape(-1, 2), wall_m, reached, decide_s,
     )  # fmt: skip
-    if reacting is not None:
-        result = replace(result, displacement_m=reacting.displacement_m)
+    imposed_m = 0.0 if reacting is None else reacting.displacement_m
+    result = replace(result, fault=fault, displacement_m=imposed_m)
     return EpisodeResult(result, walked, everyone)
+
+
+def _begun(policy: Policy, replay: Replay, rules: Rules, episode: Episode) -> str:
+    """Reset a policy for an episode; returns how it failed, or nothing."""
+    if isinstance(policy, Prescient):
+        policy.foresee(replay, episode)
+    task = Task(rules, replay.name, replay.obstacles, replay.bounds, episode.start, episode.goal)
+    try:
+        policy.reset(task)
+    except PolicyFaultError as error:
+        return f"at the start: {error}"
+    return ""
 
 
 def limit_velocity(rules: Rules, before: Floats, wanted: Floats) -> Floats:

@@ -31,7 +31,7 @@ class EpisodeFiles:
         """The file of an episode."""
         name = self.names[trial.source.path].replace("/", "_")
         return self.pattern.with_stem(
-            f"{self.pattern.stem}-{name}-{trial.policy}-{episode.number:03d}"
+            f"{self.pattern.stem}-{name}-{trial.label}-{episode.number:03d}"
         )
 
     def write(self, trial: Trial, episode: Episode, walked: Floats, people: People) -> None:

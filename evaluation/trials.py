@@ -12,6 +12,7 @@ from typing import Any, Final
 from esplanade.commandline.provenance import digest_of
 from esplanade.evaluation.episodes import Episode, choose_episodes
 from esplanade.evaluation.policies import make_policy
+from esplanade.evaluation.policies.outside.naming import is_outside, label_of, own_options
 from esplanade.evaluation.replay import Interpolation, Replay
 from esplanade.evaluation.rules import Rules
 from esplanade.evaluation.simulation import Environment
@@ -97,7 +98,12 @@ class Trial:
     rules: Rules
     episodes: tuple[Episode, ...]
     settings: tuple[tuple[str, Any], ...] = ()
-    """Changed settings, for our own policy."""
+    """Changed settings, for our own policy, or the options of one from outside."""
+
+    @property
+    def label(self) -> str:
+        """The short name of the policy, for tables, pictures and files."""
+        return label_of(self.policy)
 
 
 def plan_trials(
@@ -107,21 +113,36 @@ def plan_trials(
     count: int,
     seed: int,
     settings: Mapping[str, Any],
+    options: Sequence[tuple[str, Any]] = (),
 ) -> list[Trial]:
     """Plan every policy on the same episodes of every recording.
+
+    `settings` are those of our actor, `options` those of policies from outside, by their names or,
+    for one of several, as `MyPolicy.gain`.
 
     Raises
     ------
     RecordingError
         A file is broken.
     PolicyError
-        The package that a policy needs is not installed.
+        The package that a policy needs is not installed, or a policy cannot be made.
     """
-    follows = {name: make_policy(name, settings).follows_recording for name in policies}
+    given = {n: own_options(n, options) if is_outside(n) else dict(settings) for n in policies}
+    follows = {name: _follows_recording(name, given[name]) for name in policies}
     trials = []
     for source in sources:
         episodes = source.episodes(rules, count, seed)
         for name in policies:
             taken = tuple(e for e in episodes if not (follows[name] and e.reverse))
-            trials.append(Trial(source, name, rules, taken, tuple(settings.items())))
+            trials.append(Trial(source, name, rules, taken, tuple(given[name].items())))
     return trials
+
+
+def _follows_recording(name: str, settings: Mapping[str, Any]) -> bool:
+    """Whether a policy, which is made and started for that, repeats the recorded trajectory."""
+    policy = make_policy(name, settings)
+    try:
+        policy.start()
+    finally:
+        policy.close()
+    return policy.follows_recording

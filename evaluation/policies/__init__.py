@@ -4,6 +4,7 @@ from collections.abc import Callable, Mapping
 from importlib import import_module
 from typing import Any, Final, NamedTuple, cast
 
+from esplanade.evaluation.policies.outside.naming import is_outside
 from esplanade.evaluation.policies.policy import Policy, PolicyError
 
 
@@ -28,15 +29,18 @@ POLICIES: Final = {
 
 
 def make_policy(name: str, settings: Mapping[str, Any] | None = None) -> Policy:
-    """Make the policy of a name in `POLICIES`.
+    """Make the policy of a name in `POLICIES`, or one from outside.
 
-    `settings` are those of our actor; all policies but "esplanade" ignore them.
+    `settings` are those of our actor, or options of a policy from outside; all others ignore them.
 
     Raises
     ------
     PolicyError
         The package that the policy needs is not installed.
     """
+    if is_outside(name):
+        outside = import_module("esplanade.evaluation.policies.outside.outside")
+        return cast(Policy, outside.Outside(name, settings))
     entry = POLICIES[name]
     maker = cast(
         Callable[..., Policy],

@@ -3,10 +3,12 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from esplanade.evaluation.policies.policy import Observation, Policy, Task
+from esplanade.evaluation.episodes import Episode
+from esplanade.evaluation.policies.policy import Observation, Prescient, Task
+from esplanade.evaluation.replay import Replay
 
 
-class Human(Policy):
+class Human(Prescient):
     """Repeats the trajectory of the pedestrian whose place the robot takes.
 
     It is a reference that knows the recording.
@@ -14,8 +16,10 @@ class Human(Policy):
 
     follows_recording = True
 
+    def foresee(self, replay: Replay, episode: Episode) -> None:
+        self._trajectory = replay.trajectory(episode.pedestrian)
+
     def reset(self, task: Task) -> None:
-        self._trajectory = task.replay.trajectory(task.episode.pedestrian)
         self._tick_s = task.rules.tick_s
         self._next = 1
 

@@ -48,13 +48,13 @@ class JuPedSim(Policy):
     def reset(self, task: Task) -> None:
         self._rules = task.rules
         shapely = self._shapely
-        x0, y0, x1, y1 = task.replay.bounds
+        x0, y0, x1, y1 = task.bounds
         area = shapely.box(x0 - MARGIN_M, y0 - MARGIN_M, x1 + MARGIN_M, y1 + MARGIN_M)
         walls = shapely.union_all(
-            [shapely.LineString(wall).buffer(WALL_M) for wall in task.replay.obstacles.outline]
+            [shapely.LineString(wall).buffer(WALL_M) for wall in task.obstacles.outline]
         )
         parts = getattr(area.difference(walls), "geoms", None) or [area.difference(walls)]
-        start = shapely.Point(task.episode.start)
+        start = shapely.Point(task.start)
         self._area = min(parts, key=start.distance)
         shapely.prepare(self._area)
 

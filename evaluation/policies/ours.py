@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 from pydantic import ValidationError
 
 from esplanade.actors import ActorParameters, Navigator
+from esplanade.evaluation.obstacles import ObstacleSet
 from esplanade.evaluation.policies.policy import DebugInfo, Observation, Policy, PolicyError, Task
-from esplanade.evaluation.replay import Replay
 from esplanade.evaluation.rules import Rules
 from esplanade.evaluation.settings import models_of, parameters_of
 from esplanade.planning import LayeredGrid, Scene
@@ -40,13 +40,13 @@ class Esplanade(Policy):
     def __init__(self, settings: Mapping[str, Any] | None = None) -> None:
         self._settings = dict(settings or {})
         self._models = models_of(self._settings)
-        self._replay: Replay | None = None
+        self._obstacles: ObstacleSet | None = None
         self._navigator: Navigator | None = None
 
     def reset(self, task: Task) -> None:
-        if self._replay is not task.replay:
-            self._grid = LayeredGrid.from_scene(_scene(task.replay))
-            self._replay = task.replay
+        if self._obstacles is not task.obstacles:
+            self._grid = LayeredGrid.from_scene(_scene(task))
+            self._obstacles = task.obstacles
         if self._navigator is not None:
             self._navigator.close()
         self._navigator = Navigator(
@@ -58,7 +58,7 @@ class Esplanade(Policy):
             rules=self._models.rules,
         )
         self._navigator.add_actor(
-            _ACTOR, task.episode.start, task.episode.goal, _parameters(task.rules, self._settings)
+            _ACTOR, task.start, task.goal, _parameters(task.rules, self._settings)
         )
         self._first_decision = True
 
@@ -100,14 +100,14 @@ class Esplanade(Policy):
         return x, y
 
 
-def _scene(replay: Replay) -> Scene:
-    x0, y0, x1, y1 = replay.bounds
+def _scene(task: Task) -> Scene:
+    x0, y0, x1, y1 = task.bounds
     bounds = (x0 - MARGIN_M, y0 - MARGIN_M, x1 + MARGIN_M, y1 + MARGIN_M)
     try:
-        return Scene.open_space(bounds, replay.obstacles.obstacles.as_walls(), name=replay.name)
+        return Scene.open_space(bounds, task.obstacles.obstacles.as_walls(), name=task.place)
     except ValidationError as error:
         message = error.errors()[0]["msg"]
-        raise PolicyError(f"{replay.name} cannot be made into a scene: {message}") from None
+        raise PolicyError(f"{task.place} cannot be made into a scene: {message}") from None
 
 
 def _parameters(rules: Rules, settings: Mapping[str, Any]) -> ActorParameters:

@@ -4,20 +4,27 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from esplanade.evaluation.episodes import Episode
-from esplanade.evaluation.replay import Replay
 from esplanade.evaluation.rules import Rules
+
+if TYPE_CHECKING:  # a policy from outside runs in a process that has nothing of a recording
+    from esplanade.evaluation.episodes import Episode
+    from esplanade.evaluation.obstacles import ObstacleSet
+    from esplanade.evaluation.replay import Replay
 
 Floats = NDArray[np.float64]
 
 
 class PolicyError(Exception):
     """A policy cannot be used here; the message says why, and what helps."""
+
+
+class PolicyFaultError(Exception):
+    """A policy failed in the middle of an episode, which ends; the message says how."""
 
 
 @dataclass(frozen=True)
@@ -49,15 +56,20 @@ class Observation:
 
 @dataclass(frozen=True)
 class Task:
-    """The episode that a policy is reset for.
+    """The trip that a policy is reset for; places are (x, y) in metres.
 
-    `replay` and `episode` contain the future. Only the reference policies `oracle` and `human` use
-    it; all others may use nothing but walls, bounds, start and goal.
+    Nothing of the future is in it. The reference policies `oracle` and `human` are shown that
+    apart, by `Prescient.foresee`.
     """
 
     rules: Rules
-    replay: Replay
-    episode: Episode
+    place: str
+    """The name of the recording."""
+    obstacles: ObstacleSet
+    bounds: tuple[float, float, float, float]
+    """The bounds of the recording: x0, y0, x1, y1 in metres."""
+    start: tuple[float, float]
+    goal: tuple[float, float]
 
 
 @dataclass(frozen=True)
@@ -77,6 +89,15 @@ class Policy(ABC):
     """Whether the policy repeats the recorded trajectory; then the limits of speed and
     acceleration do not apply, and there are no reversed trips."""
 
+    def start(self) -> None:  # noqa: B027 - most policies need nothing
+        """Begin what the policy needs, such as a process.
+
+        Raises
+        ------
+        PolicyError
+            The policy cannot be used here.
+        """
+
     @abstractmethod
     def reset(self, task: Task) -> None:
         """Begin an episode."""
@@ -88,3 +109,14 @@ class Policy(ABC):
     def debug_info(self) -> DebugInfo:
         """The plan and predictions of the last decision, if the policy has any."""
         return DebugInfo()
+
+    def close(self) -> None:  # noqa: B027 - most policies need nothing
+        """End what the policy has started, such as a process. It is not used afterwards."""
+
+
+class Prescient(Policy):
+    """A reference policy, which is shown the whole recording before each episode."""
+
+    @abstractmethod
+    def foresee(self, replay: Replay, episode: Episode) -> None:
+        """Look at the recording, with its future, and the episode that begins next."""

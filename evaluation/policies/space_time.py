@@ -90,7 +90,7 @@ class SpaceTimeSearch(Policy):
             STEP_S,
             np.ascontiguousarray(tracks),
             rules.contact_m + margins_m,
-            self._task.replay.obstacles.outline,
+            self._task.obstacles.outline,
             WALL_M,
         )
 

@@ -183,7 +183,7 @@ def test_recordings_of_one_name_are_told_apart_by_their_paths(
 @pytest.mark.parametrize(
     ("arguments", "fault"),
     [
-        (["--policy", "magic"], "--policy: 'magic' is no choice; there are esplanade, straight"),
+        (["--policy", "magic"], "--policy: 'magic' is no policy; there are esplanade, straight"),
         (["--episodes", "0"], "--episodes: '0' is no whole number from 1 to 100000"),
         (["--a-max", "fast"], "'fast' is no number from 0.2 to 20"),
         (["--fps", "nan"], "'nan' is no number"),
