@@ -12,6 +12,7 @@ import msgpack
 import numpy as np
 from pydantic import BaseModel, Field, TypeAdapter, ValidationError
 
+from esplanade.protocol.looks import NO_LOOK, KnownLook
 from esplanade.protocol.snapshot import RECORD
 from esplanade.protocol.steps import STEP
 from esplanade.server.link.frame_parts import FrameError
@@ -60,6 +61,8 @@ class _Further(BaseModel):
 
     gestures: dict[int, int] = Field(default_factory=dict)
     away: dict[int, bool] = Field(default_factory=dict)
+    looks: dict[int, KnownLook] = Field(default_factory=dict)
+    """Of those among the reshaped who have chosen one."""
 
 
 def encode_frame(frame: Frame) -> bytes:
@@ -119,7 +122,7 @@ def decode_frame(body: bytes) -> Frame:
             away=further.away,
             plans=plans,
         ),
-        reshaped=[Reshaped(*each) for each in reshaped],
+        reshaped=[Reshaped(*each, further.looks.get(each[0], NO_LOOK)) for each in reshaped],
         outcomes=[
             Outcome(command, at_tick, None if fault is None else Fault(*fault))
             for command, at_tick, fault in outcomes
@@ -150,8 +153,10 @@ def _rest_of(frame: Frame) -> list[Any]:
             for each in frame.outcomes
         ],
     ]
-    if events.gestures or events.away:
-        rest.append({"gestures": dict(events.gestures), "away": dict(events.away)})
+    looks = {each.id: each.look for each in frame.reshaped if each.look != NO_LOOK}
+    if events.gestures or events.away or looks:
+        further = {"gestures": dict(events.gestures), "away": dict(events.away), "looks": looks}
+        rest.append({name: told for name, told in further.items() if told})
     return rest
 
 

@@ -46,6 +46,7 @@ from esplanade.server.world.inputs import (
     Still,
 )
 from esplanade.server.world.latest_steps import LatestSteps
+from esplanade.server.world.looks import Looks
 from esplanade.server.world.outcomes import Fault, Outcome
 from esplanade.server.world.people import People
 from esplanade.server.world.person_inputs import PersonInputs
@@ -123,7 +124,8 @@ class Zone:
         self._spawning = Spawning(
             scene, grid, rules.person_clearance_m, np.random.SeedSequence(seed)
         )
-        self._persons = PersonInputs(self.state, self._people, self._spawning, grid, rules)
+        looks = Looks(self.state, seed)
+        self._persons = PersonInputs(self.state, self._people, self._spawning, grid, rules, looks)
         self._begin_frame()
         self._observed = NOBODY
         self._saved = SavedZone(
@@ -136,6 +138,7 @@ class Zone:
             self.contacts,
             rules.person_radius_m,
             grid,
+            looks,
         )
         self._exact = ExactState(
             Parts(

@@ -26,6 +26,7 @@ from esplanade.protocol import codes as table
 from esplanade.protocol.codec import MAX_BLOCK_BYTES, SNAPSHOT_HEAD_BYTES, STEPS_HEAD_BYTES
 from esplanade.protocol.codes import ClientCode, CloseCode, ServerCode
 from esplanade.protocol.keys_between import FAR
+from esplanade.protocol.looks import MOST, SHORTEST_CM, Look
 from esplanade.protocol.messages import (
     Circle,
     Entity,
@@ -146,6 +147,8 @@ def documented_type(kind: Any) -> str:
         return "list of " + (part if part.startswith("[") else re.sub(r"^(\w+)", r"\1s", part))
     if origin is dict or (isinstance(kind, type) and issubclass(kind, BaseModel)):
         return "map"
+    if kind is Look:
+        return "array of six integers"
     if isinstance(kind, type) and issubclass(kind, int):
         return "integer"
     return "text"
@@ -168,6 +171,14 @@ def test_reasons_errors_and_close_codes() -> None:
     assert [(int(row["Close code"]), row["Name"]) for row in closes] == [
         (code.value, code.name.lower()) for code in CloseCode
     ]
+
+
+def test_the_parts_of_a_look() -> None:
+    (parts,) = tables(section("Looks"))
+    assert [(int(row["Place"]), row["Name"]) for row in parts] == list(enumerate(Look._fields))
+    ranges = [f"0 to {most}" for most in MOST[:-1]]
+    ranges.append(f"0, or {SHORTEST_CM} to {MOST.stature_cm}")
+    assert [row["Range"] for row in parts] == ranges
 
 
 def test_names_in_running_text() -> None:
@@ -223,7 +234,8 @@ def test_the_layout_of_a_record(title: str, place: int, record: np.dtype[np.void
 
 def test_versions() -> None:
     text = " ".join(section("Versions").split())
-    served = " and ".join(map(str, SERVED_VERSIONS))
+    *older, newest = map(str, SERVED_VERSIONS)
+    served = f"{', '.join(older)} and {newest}"
     assert f"here {VERSION}." in text
     assert f"This server serves version {served}." in text
     # From version 4 on the server serves the version before its own, too.
