@@ -370,6 +370,18 @@ class Blocker(BaseModel):
     """Metres between the bodies, or to the door or wall."""
 
 
+class Tour(BaseModel):
+    """The tour on which a guide leads people."""
+
+    model_config = ConfigDict(frozen=True, extra="ignore")
+    stops: list[str]
+    """Names of places of the scene; an empty one for a stop without a name."""
+    next: int
+    """The place among them of the stop to which it leads, or where it is."""
+    followers: list[EntityId]
+    """The people who are being led."""
+
+
 class Plan(FromServer):
     """Why the watched actor does what it does, about five times a second."""
 
@@ -391,6 +403,8 @@ class Plan(FromServer):
     """How the trip ended; None while it goes on, and without a goal."""
     in_the_way: Blocker | None = None
     """The one for whom the trip did not end at the goal."""
+    tour: Annotated[Tour | None, Field(exclude_if=_is_unset)] = None
+    """The tour of a guide; left out for all others."""
 
 
 class Census(FromServer):

@@ -63,6 +63,8 @@ class _Further(BaseModel):
     away: dict[int, bool] = Field(default_factory=dict)
     looks: dict[int, KnownLook] = Field(default_factory=dict)
     """Of those among the reshaped who have chosen one."""
+    hearers: dict[int, frozenset[int]] = Field(default_factory=dict)
+    """Of the lines that not everybody hears, by their places among all."""
 
 
 def encode_frame(frame: Frame) -> bytes:
@@ -117,7 +119,7 @@ def decode_frame(body: bytes) -> Frame:
         events=Events(
             doors=doors,
             pointing=pointing,
-            chat=[Line(*each) for each in chat],
+            chat=[Line(*each, to=further.hearers.get(k)) for k, each in enumerate(chat)],
             gestures=further.gestures,
             away=further.away,
             plans=plans,
@@ -154,8 +156,10 @@ def _rest_of(frame: Frame) -> list[Any]:
         ],
     ]
     looks = {each.id: each.look for each in frame.reshaped if each.look != NO_LOOK}
-    if events.gestures or events.away or looks:
-        further = {"gestures": dict(events.gestures), "away": dict(events.away), "looks": looks}
+    hearers = {k: sorted(line.to) for k, line in enumerate(events.chat) if line.to is not None}
+    manners = {"gestures": dict(events.gestures), "away": dict(events.away)}
+    further = {**manners, "looks": looks, "hearers": hearers}
+    if any(further.values()):
         rest.append({name: told for name, told in further.items() if told})
     return rest
 

@@ -50,6 +50,8 @@ class Line:
     text: str
     number: int = 0
     """The number by which clients know it; 0 where it is given by whoever tells them."""
+    to: frozenset[int] | None = None
+    """Those who hear it, by their avatars; None for everyone who has the speaker in view."""
 
 
 @dataclass(frozen=True)

@@ -43,6 +43,7 @@ from esplanade.protocol.messages import (
     SetDoor,
     Snapshot,
     StepBlock,
+    Tour,
     Travel,
     WalkTo,
     Watch,
@@ -140,6 +141,9 @@ blockers = st.builds(
     door=st.none() | texts,
     away=st.none() | floats,
 )
+tours = st.builds(
+    Tour, stops=st.lists(texts, max_size=3), next=u32, followers=st.lists(u32, max_size=3)
+)
 circles = st.builds(Circle, x=floats, y=floats, z=floats, radius=floats)
 
 server_messages: st.SearchStrategy[FromServer] = st.one_of(
@@ -187,6 +191,7 @@ server_messages: st.SearchStrategy[FromServer] = st.one_of(
         blocker=st.none() | blockers,
         outcome=st.none() | st.sampled_from(Outcome),
         in_the_way=st.none() | blockers,
+        tour=st.none() | tours,
     ),
     st.builds(Census, people=u32, actors=u32),
     st.builds(Doors, doors=doors),

@@ -28,6 +28,7 @@ from esplanade.protocol.codes import ClientCode, CloseCode, ServerCode
 from esplanade.protocol.keys_between import FAR
 from esplanade.protocol.looks import MOST, SHORTEST_CM, Look
 from esplanade.protocol.messages import (
+    Blocker,
     Circle,
     Entity,
     FromClient,
@@ -35,6 +36,7 @@ from esplanade.protocol.messages import (
     Plan,
     Snapshot,
     StepBlock,
+    Tour,
 )
 from esplanade.protocol.snapshot import (
     MAX_EXTENT_M,
@@ -119,10 +121,13 @@ def test_every_field_is_documented_with_its_type(model: type[FromClient | FromSe
 
 
 @pytest.mark.parametrize(
-    ("title", "model"), [("enter", Entity), ("plan", Circle)], ids=["entity", "circle"]
+    ("title", "place", "model"),
+    [("enter", 1, Entity), ("plan", 1, Circle), ("plan", 2, Blocker), ("plan", 3, Tour)],
 )
-def test_every_field_of_a_part_is_documented(title: str, model: type[BaseModel]) -> None:
-    rows = tables(section(title))[1]
+def test_every_field_of_a_part_is_documented(
+    title: str, place: int, model: type[BaseModel]
+) -> None:
+    rows = tables(section(title))[place]
     assert [row["Field"] for row in rows] == list(model.model_fields)
     for row in rows:
         assert row["Type"] == documented_type(model.model_fields[row["Field"]].annotation)

@@ -52,7 +52,11 @@ export class Session {
   private readonly others: Others;
   private readonly notices = new NoticeBanner();
   private readonly links: Links;
-  private readonly planPanel = new PlanPanel();
+  private readonly planPanel = new PlanPanel((wanted) => {
+    this.others.follow(wanted ? this.chosenId : null);
+    // On a small screen one sees where one goes; the bar that names the actor ends it, too.
+    if (wanted) Panel.makeRoom();
+  });
   private readonly planSwitch: Panel;
   /** The operator key; null for people without one. */
   private readonly operator: string | null;
@@ -399,7 +403,8 @@ export class Session {
     const name = this.chosenId === null ? null : (world.avatars.get(this.chosenId)?.name ?? null);
     this.status.roundTrip(this.connection.clock.roundTripS);
     this.others.update(world, this.chosenId, this.view.camera.yaw);
-    this.planPanel.update(name, world.plan, world.avatars, world.scene);
+    const followed = this.chosenId !== null && this.others.followedId === this.chosenId;
+    this.planPanel.update(name, world, followed);
     const { avatars, own, doors, plan } = world;
     this.minimap.update(avatars, own, doors, this.view.camera.yaw, plan);
   }

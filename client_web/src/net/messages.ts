@@ -228,6 +228,18 @@ export interface Plan {
   outcome: number | null;
   /** The person, actor or door for which the trip did not end at the goal. */
   in_the_way: PlanBlocker | null;
+  /** The tour of a guide. */
+  tour?: PlanTour | null;
+}
+
+/** The tour on which a guide leads people. */
+export interface PlanTour {
+  /** Names of places; an empty one for a stop that has none. */
+  stops: string[];
+  /** The place among them of the stop to which it leads, or where it is. */
+  next: number;
+  /** The people who are being led. */
+  followers: number[];
 }
 
 export interface ChatMessage {

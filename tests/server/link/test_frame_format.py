@@ -92,6 +92,14 @@ def test_looks_are_carried_beside_bodies() -> None:
     assert same(decode_frame(encode_frame(frame)), frame)
 
 
+def test_lines_for_a_few_are_carried_with_those_who_hear_them() -> None:
+    frame = full_frame()
+    (first, *others) = frame.events.chat
+    events = replace(frame.events, chat=[first, *others, replace(first, to=frozenset({8, 9}))])
+    decoded = decode_frame(encode_frame(replace(frame, events=events)))
+    assert decoded.events == events
+
+
 def test_the_bytes_are_those_of_this_version() -> None:
     """Hosts and gateways of one release read each other: other bytes are another version."""
     body = encode_frame(replace(full_frame(), steps=new_step_records(0)))
