@@ -58,6 +58,8 @@ export class PlanPanel {
       return element("li", { "aria-current": current }, stopOf(tour, stop));
     });
     this.stops.replaceChildren(...items);
+    const current = items[tour.next];
+    if (current) this.stops.scrollTop = current.offsetTop - this.stops.offsetTop;
   }
 }
 
