@@ -2,6 +2,7 @@
 
     python -m benchmarks.turned_meshes                       three hundred pairs on every mesh
     python -m benchmarks.turned_meshes --mesh house.obj --angles 0 27 45
+    python -m benchmarks.turned_meshes --edge-cells 10000    without the rule of edges
 
 What can be walked must not depend on how a building lies in the grid. Pairs of points are drawn on
 the mesh as it is, where the body fits as we see it, and turned along with it. For every angle
@@ -10,6 +11,7 @@ how much longer or shorter they become at most. Recast has cells of 0.05 m.
 """
 
 import argparse
+import dataclasses
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -62,6 +64,12 @@ def parser() -> argparse.ArgumentParser:
     parser.add_argument("--pairs", type=int, default=300)
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--body", choices=BODIES, default="adult")
+    parser.add_argument(
+        "--edge-cells",
+        type=int,
+        metavar="M",
+        help="so many cells on edges in a row, not the body's",
+    )
     parser.add_argument("--cell", type=float, default=0.25, metavar="M", help="side of our cells")
     parser.add_argument("--ours", action="store_true", help="leave Recast out")
     parser.add_argument("--list", action="store_true", help="list our pairs that are lost and won")
@@ -71,6 +79,8 @@ def parser() -> argparse.ArgumentParser:
 def measure(console: Console, path: Path, options: argparse.Namespace, with_recast: bool) -> None:
     """Print the table of one mesh."""
     body = BODIES[options.body]
+    if options.edge_cells is not None:
+        body = dataclasses.replace(body, edge_cells=options.edge_cells)
     triangles = read_triangles(path, options.up)
     table = Table(title=path.stem, box=box.SIMPLE, padding=(0, 0, 0, 1))
     for title in ("degrees", "found", "lost", "won", "shortest", "longest"):

@@ -222,7 +222,8 @@ class TrackHistory:
             self._held = make_handle(self._tracks)
             self._free = list(range(size + more - 1, size - 1, -1))
         row = self._free.pop()
-        self._tracks.counts[row] = 0
+        for column in self._tracks:
+            column[row] = 0  # equal pasts are saved as equal bytes, whoever had the row before
         self._tracks.growths2[row] = self.model.sigma_growth_mps**2
         return row
 

@@ -1,5 +1,8 @@
 """Gestures by key, by mouse and by touch, seen and told in words."""
 
+import time
+from typing import Final
+
 import pytest
 from playwright.async_api import Browser, BrowserContext, expect
 
@@ -10,10 +13,34 @@ pytestmark = [pytest.mark.browser, pytest.mark.asyncio(loop_scope="module")]
 
 expect.set_options(timeout=1e3 * PATIENCE_S)
 
+AGAIN_S: Final = 10.0
+"""A key whose gesture was not told for so long is pressed again."""
+
 
 def gestures(view: View, avatar_id: int) -> bool:
     avatar = avatar_of(view, avatar_id)
     return avatar is not None and avatar["gesturing"]
+
+
+async def press_until(visitor: Visitor, key: str, told: str) -> None:
+    """Press a key until the page tells of its gesture, as people do whose line was cut.
+
+    Raises
+    ------
+    AssertionError
+        It was not told while a test waits.
+    """
+    captions = visitor.page.locator("#captions")
+    deadline_s = time.monotonic() + PATIENCE_S
+    while True:
+        await visitor.page.keyboard.press(key)
+        try:
+            await expect(captions).to_have_text(told, timeout=1e3 * AGAIN_S)
+        except AssertionError:
+            if time.monotonic() > deadline_s:
+                raise
+        else:
+            return
 
 
 async def test_a_wave_by_key_is_seen_and_told_to_others(
@@ -24,11 +51,10 @@ async def test_a_wave_by_key_is_seen_and_told_to_others(
     await ben.join("Ben")
     ann_id = (await ann.look())["id"]
     await ben.until(lambda view: avatar_of(view, ann_id) is not None)
-    await ann.page.keyboard.press("6")
+    await press_until(ann, "6", "You raise a hand.")
     await ben.until(lambda view: gestures(view, ann_id))
     await expect(ben.page.locator("#captions")).to_have_text("Ann raises a hand.")
     await expect(ben.page.locator(".label .spoken", has_text="raises a hand")).to_be_visible()
-    await expect(ann.page.locator("#captions")).to_have_text("You raise a hand.")
     # Digits in a line of chat are what they are.
     await ann.page.fill("#chat-line", "")
     await ann.page.focus("#chat-line")

@@ -269,3 +269,17 @@ def test_places_come_with_heights_and_without() -> None:
     with pytest.raises(TypeError):
         history.observe({"a": 1.0, "b": 2.0})  # type: ignore[dict-item]
     assert history.positions.tolist() == [[1.0, 2.0], [3.0, 4.0]]
+
+
+def test_nothing_is_saved_of_somebody_whose_row_another_has() -> None:
+    """Two histories of one present, one of which knew somebody else before, are equal bytes."""
+    histories = [TrackHistory(PredictionModel(), TICK_S) for _ in range(2)]
+    for k in range(7):
+        histories[0].observe({"gone": (0.1 * k, 5.0, 4.0)})
+        histories[1].observe({})
+    for history in histories:
+        history.observe({})
+        history.observe({"p": (1.0, 2.0, 0.5)})
+    one, other = (history.save() for history in histories)
+    for name in one:
+        assert np.array_equal(one[name], other[name]), name

@@ -20,7 +20,7 @@ def reached(grid, body, layer, j, i):
 
 
 @given(cluttered(), bodies)
-@holds(40, 5)
+@holds(15, 5)
 def test_steps_are_those_of_the_long_way(grid, body) -> None:
     found = traversability(grid, body).steps
     expected = np.zeros_like(found)

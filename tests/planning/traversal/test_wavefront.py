@@ -21,7 +21,7 @@ from tests.planning.worlds import holds
 
 
 @given(cluttered(), bodies, st.integers(0, 10**6))
-@holds(20, 4)
+@holds(10, 4)
 def test_ways_left_are_the_shortest_over_cells(grid, body, pick) -> None:
     feet = traversability(grid, body)
     standing = np.flatnonzero(feet.classes)
