@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Hashable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass
 from typing import Any, ClassVar, Literal
@@ -23,6 +23,7 @@ from esplanade.actors.memory import (
 )
 from esplanade.actors.outcomes import Outcome
 from esplanade.actors.sights import sight_at
+from esplanade.actors.tours import Saying, Tour, arrival, onward, welcome
 from esplanade.planning import Body, LayeredGrid, Scene
 from esplanade.planning.scene.heights import SAME_FLOOR_M
 
@@ -120,6 +121,16 @@ class Behaviour(ABC):
     @property
     def points_at(self) -> Goal | None:
         """The place that the actor shows to people since the last update, None for none."""
+        return None
+
+    @property
+    def says(self) -> Sequence[Saying]:
+        """The sentences of the last update, each for some people."""
+        return ()
+
+    @property
+    def tour(self) -> Tour | None:
+        """The tour on which the actor leads people, None for none."""
         return None
 
     @property
@@ -245,6 +256,11 @@ class Patrol(Behaviour):
             raise ValueError(f"the next stop is {self._next}, of {len(self._stops)}")
 
     @property
+    def next_stop(self) -> int:
+        """The place, among the stops, of the one that is walked to or rested at."""
+        return self._next
+
+    @property
     def resting(self) -> bool:
         """Whether the actor rests at a stop."""
         return self._rest_until is not None
@@ -276,7 +292,8 @@ class Patrol(Behaviour):
 class Guide(Behaviour):
     """Lead people along a tour; wait for followers who fall behind, then go on.
 
-    At a stop it explains the place to its followers, and points at what stands there.
+    At a stop it explains the place to its followers, and points at what stands there. It greets
+    those who join, and says to all of them where they are and where they go next.
 
     A person who stays within `join_m` for `join_after_s` seconds follows. When a follower is
     further than `lag_m` away the guide stands until it has come within `join_m` again, but no
@@ -320,6 +337,7 @@ class Guide(Behaviour):
         self._stop: Goal | None = None
         self._sight: Goal | None = None
         self._explains = False
+        self._says: list[Saying] = []
 
     @property
     def followers(self) -> frozenset[Hashable]:
@@ -335,6 +353,16 @@ class Guide(Behaviour):
     def points_at(self) -> Goal | None:
         """The sight at the stop, while it is explained to somebody."""
         return self._sight if self._explains else None
+
+    @property
+    def says(self) -> Sequence[Saying]:
+        """The sentences of the last update to those who are led."""
+        return tuple(self._says)
+
+    @property
+    def tour(self) -> Tour:
+        """The tour, and who is led on it."""
+        return Tour(self._stop_names(), self._tour.next_stop, self.followers)
 
     def copy(self) -> Behaviour:
         """A copy that later updates leave as it is."""
@@ -369,11 +397,15 @@ class Guide(Behaviour):
             for who, distance in away.items()
             if distance <= self._join_m
         }
-        self._followers |= {
+        joined = {
             who
             for who, since in self._near_since.items()
-            if view.time_s - since >= self._join_after_s
+            if view.time_s - since >= self._join_after_s and who not in self._followers
         }
+        self._followers |= joined
+        self._says = []
+        if joined:
+            self._say(welcome(self._stop_names()), joined)
         if self._waiting_since is None:
             if any(away[who] > self._lag_m for who in self._followers):
                 self._waiting_since = view.time_s
@@ -389,8 +421,17 @@ class Guide(Behaviour):
             return None
         stop = self._tour.update(view)
         self.sets_out = self._tour.sets_out
+        if self.sets_out and self._followers:
+            self._say(onward(self._stop_names(), self._tour.next_stop), self._followers)
         if stop is not None and self._tour.resting and self._followers:
             self._explains = True
             if stop != self._stop:
                 self._stop, self._sight = stop, sight_at(view.scene, stop)
+                self._say(arrival(self._stop_names(), self._tour.next_stop), self._followers)
         return stop
+
+    def _say(self, text: str, to: Iterable[Hashable]) -> None:
+        self._says.append(Saying(text, frozenset(to)))
+
+    def _stop_names(self) -> tuple[str, ...]:
+        return tuple(stop if isinstance(stop, str) else "" for stop in self._tour.targets())

@@ -11,6 +11,7 @@ from esplanade.actors.behaviour import BehaviourName, Goal
 from esplanade.actors.blockers import Blocker
 from esplanade.actors.outcomes import InTheWay, Outcome
 from esplanade.actors.state import Reason
+from esplanade.actors.tours import Tour
 from esplanade.planning import MovedEnd
 
 
@@ -35,3 +36,5 @@ class Explanation:
     """The person, actor, door or wall for which the trip did not end at the goal."""
     moved: MovedEnd | None = None
     """How the goal was moved to where the body fits; refused if the goal is strict."""
+    tour: Tour | None = None
+    """The tour on which the actor leads people."""

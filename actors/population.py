@@ -20,6 +20,7 @@ from esplanade.actors.placing import Newcomer, Placing
 from esplanade.actors.potential_pool import GoalKey, RenewedPotential
 from esplanade.actors.saved_minds import SavedMinds, load_mind
 from esplanade.actors.state import ActorState
+from esplanade.actors.tours import Saying
 from esplanade.actors.warming import warm_up
 from esplanade.planning import (
     PARAMETERS,
@@ -70,6 +71,8 @@ class Population:
         """Trips of all actors that have ended so far, by their outcome."""
         self.doors_wanted: dict[str, bool] = {}
         """Doors that behaviours wanted moved in the last tick; the actor added last prevails."""
+        self.said: list[tuple[Hashable, Saying]] = []
+        """The sentences of the last tick, each with the actor that says it."""
         self._tick = 0
         self._seed = seed
         self._behaviours: dict[Hashable, Behaviour] = {}
@@ -391,7 +394,7 @@ class Population:
             for actor_id, behaviour, chance in self._asked:
                 self._behaviours[actor_id] = behaviour
                 self._generators[actor_id].bit_generator.state = chance
-            self.doors_wanted = {}
+            self.doors_wanted, self.said = {}, []
             raise
         finally:
             self._tick += 1
@@ -401,11 +404,11 @@ class Population:
         with suppress(ValueError):
             self.navigator.observe(people)
             self._people = people
-        self.doors_wanted = {}
+        self.doors_wanted, self.said = {}, []
         self._tick += 1
 
     def _plan(self) -> None:
-        self.doors_wanted = {}
+        self.doors_wanted, self.said = {}, []
         trips, time_s = self.table.trips, self._tick * self.navigator.tick_s
         due = (time_s >= trips.ask_at_s) | (trips.outcomes != trips.outcome_when_asked)
         due[[self.table.row(actor_id) for actor_id in self._held]] = False
@@ -449,6 +452,7 @@ class Population:
             )
         )
         self.doors_wanted.update(behaviour.moves_doors)
+        self.said.extend((actor_id, saying) for saying in behaviour.says)
         ended = outcome is not None and outcome is not Outcome.ARRIVED
         if goal != self.table.wanted(row) or (ended and behaviour.sets_out):
             self.navigator.set_goal(
@@ -542,6 +546,7 @@ class Population:
             state.outcome,
             state.in_the_way,
             self.navigator.moved(actor_id),
+            behaviour.tour,
         )
 
     def blocker(self, actor_id: Hashable) -> Blocker | None:

@@ -18,6 +18,7 @@ from esplanade.bots.person import Person
 from esplanade.bots.view import Avatar, View
 from esplanade.bots.world_pace import pace_of
 from esplanade.protocol import VERSION, ProtocolError, decode_server
+from esplanade.protocol.looks import Look
 from esplanade.protocol.messages import (
     Bye,
     FromClient,
@@ -236,6 +237,7 @@ async def connect(
     steps: bool = True,
     trust: Path | None = None,
     token: str | None = None,
+    look: Look | None = None,
 ) -> AsyncIterator[Bot]:
     """Join the world at `url` and leave it at the end of the block.
 
@@ -251,6 +253,7 @@ async def connect(
     trust : file of the server's certificate, PEM; no other is trusted then, and the server's name
         is not checked. Without it, certificates are checked as the machine does
     token : a bot's token, which lets it into a closed world and at a rate of its own
+    look : clothes, hair, skin and stature of the avatar; those of its id without
 
     Raises
     ------
@@ -269,6 +272,7 @@ async def connect(
         operator=operator,
         admission=admission(token),
         steps=steps,
+        look=look,
     )
     bot = await Bot.join(url, hello, trust)
     try:

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 from esplanade.bots.admission import admission
 from esplanade.bots.client import Client, sleep_until, until_first, visit
 from esplanade.bots.clock import ServerClock
+from esplanade.bots.looks import look_of
 from esplanade.bots.player import Player
 from esplanade.bots.scenario_file import load_scenario
 from esplanade.bots.stages import Stage, Stay, stays
@@ -86,7 +87,12 @@ class LoadJob:
         end_s: float,
         stop: asyncio.Event,
     ) -> None:
-        hello = Hello(name=f"Visitor {index + 1}", version=VERSION, admission=admission(self.token))
+        hello = Hello(
+            name=f"Visitor {index + 1}",
+            version=VERSION,
+            admission=admission(self.token),
+            look=look_of(self.seed, index),
+        )
 
         async def stay(client: Client) -> None:
             works = play(client, index)

@@ -5,8 +5,10 @@ from types import MappingProxyType
 
 from esplanade.bots.view import Avatar, View
 from esplanade.protocol.codes import Gesture
+from esplanade.protocol.looks import Look
 from esplanade.protocol.messages import (
     ChatLine,
+    ChooseLook,
     FromClient,
     MakeGesture,
     Move,
@@ -84,6 +86,10 @@ class Person:
     async def be_away(self, away: bool = True) -> None:
         """Say that nobody looks through this avatar's eyes for now, or that somebody does again."""
         await self._send(Presence(away=away))
+
+    async def wear(self, look: Look) -> None:
+        """Look otherwise from now on."""
+        await self._send(ChooseLook(look=look))
 
     async def watch(self, actor_id: int | None) -> None:
         """Ask for the plans of an actor in view, or for none any more."""

@@ -5,6 +5,7 @@ from typing import Final
 
 from esplanade.bots.events import SnapshotEvent
 from esplanade.protocol import Kind, Reason
+from esplanade.protocol.looks import NO_LOOK, Look
 from esplanade.protocol.messages import (
     Away,
     Doors,
@@ -44,6 +45,7 @@ class Avatar:
     points_at: Place | None = None
     away: bool = False
     """Whether its person is away."""
+    look: Look = NO_LOOK
 
 
 class View:
@@ -92,6 +94,7 @@ class View:
         for entity in message.entities:
             if entity.id == self._own_id:
                 self.own.leg_m, self.own.stature_m = entity.leg_m, entity.stature_m
+                self.own.look = entity.look
             else:
                 self.others[entity.id] = _avatar(entity)
 
@@ -108,6 +111,7 @@ class View:
         if known is not None:
             known.radius = message.radius
             known.leg_m, known.stature_m = message.leg_m, message.stature_m
+            known.look = message.look
 
     def snapshot(self, event: SnapshotEvent) -> None:
         self.tick = event.tick
@@ -147,4 +151,5 @@ def _avatar(entity: Entity) -> Avatar:
         leg_m=entity.leg_m,
         stature_m=entity.stature_m,
         points_at=entity.points_at,
+        look=entity.look,
     )

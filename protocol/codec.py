@@ -26,6 +26,7 @@ from esplanade.protocol.messages import (
     Census,
     Chat,
     ChatLine,
+    ChooseLook,
     ClientMessage,
     Doors,
     Enter,
@@ -61,7 +62,7 @@ CLIENT_MESSAGES: Final[dict[int, type[FromClient]]] = {
     int(model.code): model
     for model in (
         *(Hello, Move, WalkTo, ChatLine, Ping, Watch, SetDoor, Report, MutePerson),
-        *(Presence, MakeGesture),
+        *(Presence, MakeGesture, ChooseLook),
     )
 }
 SERVER_MESSAGES: Final[dict[int, type[FromServer]]] = {

@@ -6,10 +6,10 @@ the browser and `tests/protocol/test_codes.py` holds the two together.
 
 from enum import IntEnum, StrEnum
 
-VERSION = 5
+VERSION = 6
 """The newest version of the protocol, which our own clients speak."""
 
-SERVED_VERSIONS = (4, 5)
+SERVED_VERSIONS = (4, 5, 6)
 """Every version that the server speaks, the oldest first. From 4 on it also serves the version
 before its own: a client tells its version in hello, and welcome repeats it."""
 
@@ -39,6 +39,7 @@ class ClientCode(IntEnum):
     MUTE = 9
     PRESENCE = 10
     GESTURE = 11
+    LOOK = 12
 
 
 class ServerCode(IntEnum):

@@ -12,10 +12,12 @@ from typing import Final
 import msgpack
 
 from esplanade.protocol.codes import Kind
+from esplanade.protocol.looks import NO_LOOK, Look
 
 Place = tuple[float, float, float]
 
 _FIELDS: Final = 12
+"""Of an avatar without a look; the look is one more."""
 _FLOAT: Final = b"\xcb"
 
 
@@ -40,12 +42,13 @@ class Entity:
     radius: float
     leg_m: float
     stature_m: float
+    look: Look = NO_LOOK
 
 
 def pack_constants(entity: Entity) -> tuple[bytes, bytes]:
     """The bytes before and after the place of an avatar."""
     packer = msgpack.Packer(autoreset=False)
-    packer.pack_map_header(_FIELDS)
+    packer.pack_map_header(_FIELDS + (entity.look != NO_LOOK))
     for name, value in (("id", entity.id), ("kind", entity.kind.value), ("name", entity.name)):
         packer.pack(name)
         packer.pack(value)
@@ -54,6 +57,9 @@ def pack_constants(entity: Entity) -> tuple[bytes, bytes]:
     for name in ("radius", "leg_m", "stature_m"):
         packer.pack(name)
         packer.pack(getattr(entity, name))
+    if entity.look != NO_LOOK:
+        packer.pack("look")
+        packer.pack(entity.look)
     return head, packer.bytes()
 
 

@@ -26,6 +26,7 @@ from esplanade.protocol.codes import (
     ServerCode,
 )
 from esplanade.protocol.lines import plain_line
+from esplanade.protocol.looks import NO_LOOK, ChosenLook, KnownLook, Look
 from esplanade.protocol.names import plain_name
 
 Metres = Annotated[float, Field(ge=-100_000.0, le=100_000.0, allow_inf_nan=False)]
@@ -44,6 +45,11 @@ Line = Annotated[
     StringConstraints(strip_whitespace=True, min_length=1, max_length=MAX_CHAT_CHARS),
     AfterValidator(plain_line),
 ]
+
+
+def _is_plain(look: Look) -> bool:
+    """Whether no part of a look is chosen; it is left out then."""
+    return look == NO_LOOK
 
 
 def _is_unset(value: object) -> bool:
@@ -93,6 +99,8 @@ class Hello(FromClient):
     """What lets the client in where not everybody comes in."""
     steps: bool = True
     """Whether steps are wanted; who draws no feet gets all places in snapshots instead."""
+    look: Annotated[ChosenLook | None, Field(exclude_if=_is_unset)] = None
+    """The look of the avatar. Whoever comes back without one keeps that of before."""
 
 
 class Move(FromClient):
@@ -180,6 +188,13 @@ class MakeGesture(FromClient):
     gesture: Annotated[int, Field(ge=min(Gesture), le=max(Gesture))]
 
 
+class ChooseLook(FromClient):
+    """Let the own avatar look otherwise."""
+
+    code = ClientCode.LOOK
+    look: ChosenLook
+
+
 ClientMessage = (
     Hello
     | Move
@@ -192,6 +207,7 @@ ClientMessage = (
     | MutePerson
     | Presence
     | MakeGesture
+    | ChooseLook
 )
 
 # --- server → client --------------------------------------------------------------------------
@@ -249,6 +265,7 @@ class Entity(BaseModel):
     stature_m: float
     points_at: Place | None
     """The place that an actor points at while it explains."""
+    look: Annotated[KnownLook, Field(exclude_if=_is_plain)] = NO_LOOK
 
 
 class Enter(FromServer):
@@ -353,6 +370,18 @@ class Blocker(BaseModel):
     """Metres between the bodies, or to the door or wall."""
 
 
+class Tour(BaseModel):
+    """The tour on which a guide leads people."""
+
+    model_config = ConfigDict(frozen=True, extra="ignore")
+    stops: list[str]
+    """Names of places of the scene; an empty one for a stop without a name."""
+    next: int
+    """The place among them of the stop to which it leads, or where it is."""
+    followers: list[EntityId]
+    """The people who are being led."""
+
+
 class Plan(FromServer):
     """Why the watched actor does what it does, about five times a second."""
 
@@ -374,6 +403,8 @@ class Plan(FromServer):
     """How the trip ended; None while it goes on, and without a goal."""
     in_the_way: Blocker | None = None
     """The one for whom the trip did not end at the goal."""
+    tour: Annotated[Tour | None, Field(exclude_if=_is_unset)] = None
+    """The tour of a guide; left out for all others."""
 
 
 class Census(FromServer):
@@ -408,13 +439,14 @@ class Point(FromServer):
 
 
 class Reshape(FromServer):
-    """An avatar in view has another body from now on; where it is and walks goes on."""
+    """An avatar in view has another body or look from now on; where it is and walks goes on."""
 
     code = ServerCode.RESHAPE
     id: EntityId
     radius: float
     leg_m: float
     stature_m: float
+    look: Annotated[KnownLook, Field(exclude_if=_is_plain)] = NO_LOOK
 
 
 class Travel(FromServer):

@@ -39,6 +39,8 @@ class PersonRecord(BaseModel):
     """For how many seconds nobody hears the person yet, from the moment of coming into the zone."""
     wished: str = ""
     """The name that the person asked for; the seat's may have a number behind it."""
+    look: Annotated[tuple[int, ...], Field(max_length=64)] = ()
+    """The numbers of the person's look; none where none is chosen."""
 
 
 def encode_record(record: PersonRecord) -> bytes:

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, field
 
+from esplanade.protocol.looks import Look
 from esplanade.server.cluster.person_record import PersonRecord
 from esplanade.server.net.session import Session
 
@@ -27,6 +28,8 @@ class Occupant:
     """Whether the client has said whom it does not want to hear."""
     away: bool | None = None
     """Whether the client has said that its person is away; None while it has said nothing."""
+    look: Look | None = None
+    """The look that the client has asked for since; None where the record says it."""
     told: list[bytes] = field(default_factory=list)
     """Frames from the host that wait until the client has been welcomed to its zone."""
     lines: list[str] = field(default_factory=list)

@@ -191,6 +191,7 @@ class Reception:
         if resumed and record.account and session.operator is None:
             session.operator = await self._again(record)
         who = Occupant(seat.person, seat.generation, session, record, resumed, now_s)
+        who.look = hello.look if resumed else None
         try:
             view = await self.views.opened(seat.zone)
             self._check_ban(session, hello)  # one may have come to hold meanwhile
@@ -237,6 +238,7 @@ class Reception:
             operator=session.is_operator,
             account=_account_of(session),
             wished=session.wished,
+            look=tuple(hello.look or ()),
         )
         return await self._seats.take(self._start, like(hello.name), record)
 

@@ -7,6 +7,7 @@ from typing import Final
 
 import numpy as np
 
+from esplanade.protocol.looks import Look
 from esplanade.protocol.messages import Report, WalkTo
 from esplanade.server.gateway.occupant import Occupant
 from esplanade.server.link.batches import MOVEMENT, Batch
@@ -51,6 +52,7 @@ class Upward:
         self._reports: list[tuple[int, int, Report]] = []
         self._presences: dict[int, tuple[int, int, bool]] = {}
         self._gestures: dict[int, tuple[int, int, int]] = {}
+        self._looks: dict[int, tuple[int, int, Look]] = {}
         self.left_out = 0
         """Lines that were given up, since the zone took none of those before."""
 
@@ -119,6 +121,10 @@ class Upward:
         """Let an avatar make a gesture."""
         self._gestures[who.person] = (who.person, who.generation, gesture)
 
+    def wear(self, who: Occupant, look: Look) -> None:
+        """Let an avatar look otherwise."""
+        self._looks[who.person] = (who.person, who.generation, look)
+
     def batch(self, epoch: int, held: list[tuple[int, int]], now_s: float) -> Batch | None:
         """Everything since the last batch, for the owner of that epoch, with whom we serve.
 
@@ -129,7 +135,7 @@ class Upward:
             wish.sent_s = now_s
             wish.tries += 1
         waiting = (self._held, self._departed, self._stood, self._watched, self._doors, self._lines)
-        said = (self._muted, self._reports, self._presences, self._gestures)
+        said = (self._muted, self._reports, self._presences, self._gestures, self._looks)
         if not held and not due and not any(said) and not any(waiting):
             return None
         self._number += 1
@@ -149,10 +155,11 @@ class Upward:
             self._reports,
             list(self._presences.values()),
             list(self._gestures.values()),
+            list(self._looks.values()),
         )
         self._held, self._departed, self._lines, self._stood = [], [], [], []
         self._watched, self._doors, self._muted, self._reports = {}, {}, {}, []
-        self._presences, self._gestures = {}, {}
+        self._presences, self._gestures, self._looks = {}, {}, {}
         self._wishes = {
             person: wish for person, wish in self._wishes.items() if wish.tries < MOST_TRIES
         }
@@ -163,3 +170,4 @@ class Upward:
         self._watched.pop(person, None)
         self._presences.pop(person, None)
         self._gestures.pop(person, None)
+        self._looks.pop(person, None)

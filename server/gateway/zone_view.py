@@ -372,6 +372,8 @@ class ZoneView:
                     self._upward.mute(who, self._lines.muted_by(who.person))
                 if who.away is not None:
                     self._upward.be_away(who, who.away)
+                if who.look is not None:
+                    self._upward.wear(who, who.look)
         batch = self._upward.batch(self._epoch, held, now_s)
         if batch is None:
             return

@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from typing import Final
 
 from esplanade.protocol import ErrorCode, ProtocolError
+from esplanade.protocol.looks import Look
 from esplanade.protocol.messages import Move, MutePerson, Report, SetDoor, WalkTo
 from esplanade.server.gateway.occupant import Occupant
 from esplanade.server.gateway.upward import Upward
@@ -140,6 +141,13 @@ class ZoneWishes:
         who = self._of(session)
         if who is not None:
             self._upward.make_gesture(who, gesture)
+
+    def look(self, session: Session, look: Look) -> None:
+        """Let the person's avatar look otherwise from the next tick on."""
+        who = self._of(session)
+        if who is not None:
+            who.look = look
+            self._upward.wear(who, look)
 
     def _of(self, session: Session) -> Occupant | None:
         """The occupation of a session whose seat is in the zone."""

@@ -157,13 +157,16 @@ class GatewayBatches:
                 self._reporting.take(guest, report, now_s)
 
     def _take_manners(self, batch: Batch) -> None:
-        """Take in who is away from the screen, and which gestures people make."""
+        """Take in who is away from the screen, which gestures people make, and how they look."""
         for person, generation, away in batch.presences:
             if self._steers(person, generation):
                 self._pending.be_away(SetAway(person, away))
         for person, generation, gesture in batch.gestures:
             if self._steers(person, generation):
                 self._pending.make_gesture(MakeGesture(person, gesture))
+        for person, generation, look in batch.looks:
+            if self._steers(person, generation):
+                self._people.wear(person, look)
 
     def _steers(self, person: int, generation: int) -> bool:
         if self._people.occupations.may_steer(person, generation):

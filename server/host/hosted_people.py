@@ -11,6 +11,7 @@ import structlog
 
 from esplanade.planning import MovedEnd
 from esplanade.protocol import ErrorCode, ProtocolError
+from esplanade.protocol.looks import Look, known_look
 from esplanade.protocol.messages import Notice, WalkTo
 from esplanade.server.cluster.occupations import Occupations
 from esplanade.server.cluster.person_record import PersonRecord, encode_record
@@ -32,6 +33,7 @@ from esplanade.server.world.inputs import (
     Input,
     Join,
     Leave,
+    SetLook,
 )
 from esplanade.server.world.routes import Point, Route
 from esplanade.server.world.state import PERSON
@@ -159,7 +161,12 @@ class HostedPeople:
         if record.silent_s and self.moderation is not None:
             self.moderation.mutes.put(seat.person, record.silent_s)
         self._joins[seat.person] = Join(
-            seat.generation, seat.name, record.place, record.anywhere, id=seat.person
+            seat.generation,
+            seat.name,
+            record.place,
+            record.anywhere,
+            id=seat.person,
+            look=known_look(record.look),
         )
 
     def _people(self) -> set[int]:
@@ -241,6 +248,15 @@ class HostedPeople:
             self._records[person] = record = record.model_copy(update={"muted": muted})
             self._desk.keep(person, encode_record(record))
 
+    def wear(self, person: int, look: Look) -> None:
+        """Let somebody look otherwise, and note it in the seat too; it may come again."""
+        record = self.record_of(person)
+        if person in self._seats and record.look != look:
+            self._records[person] = record = record.model_copy(update={"look": tuple(look)})
+            self._desk.keep(person, encode_record(record))
+        if person in self._world.state and self._world.state.look(person) != look:
+            self._pending.wear(SetLook(person, look))
+
     def expel(self, person: int) -> None:
         """Send somebody out for good, whoever has taken the seat last."""
         self._expelled.add(person)
@@ -298,6 +314,9 @@ class HostedPeople:
         self.leaving.discard(person)
         if is_here and seat is not None:
             name = seat.name
-            self._joins[person] = Join(seat.generation, name, at, anywhere=True, id=person)
+            look = known_look(self.record_of(person).look)
+            self._joins[person] = Join(
+                seat.generation, name, at, anywhere=True, id=person, look=look
+            )
         else:
             self._remove(person)

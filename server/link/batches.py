@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, Field, TypeAdapter, ValidationError
 
 from esplanade.protocol.codes import Gesture
+from esplanade.protocol.looks import KnownLook, Look
 from esplanade.protocol.messages import Line, Report, WalkTo
 
 MAGIC: Final = b"EB"
@@ -66,6 +67,7 @@ class _Further(BaseModel):
     reports: list[tuple[Number, Number, Report]] = Field(default_factory=list)
     presences: list[tuple[Number, Number, bool]] = Field(default_factory=list)
     gestures: list[tuple[Number, Number, Made]] = Field(default_factory=list)
+    looks: list[tuple[Number, Number, KnownLook]] = Field(default_factory=list)
 
 
 class BatchError(ValueError):
@@ -103,6 +105,8 @@ class Batch:
     """Whether persons are away from their screens."""
     gestures: list[tuple[int, int, int]] = field(default_factory=list)
     """Gestures that persons make."""
+    looks: list[tuple[int, int, Look]] = field(default_factory=list)
+    """Looks that persons want to have from now on."""
 
 
 def encode_batch(batch: Batch) -> bytes:
@@ -120,7 +124,8 @@ def encode_batch(batch: Batch) -> bytes:
         batch.muted,
     ]
     reports = [(person, generation, one.model_dump()) for person, generation, one in batch.reports]
-    further = {"reports": reports, "presences": batch.presences, "gestures": batch.gestures}
+    manners = {"presences": batch.presences, "gestures": batch.gestures, "looks": batch.looks}
+    further = {"reports": reports, **manners}
     if any(further.values()):
         rest.append({name: inputs for name, inputs in further.items() if inputs})
     packed: bytes = msgpack.packb(rest)
@@ -168,6 +173,7 @@ def decode_batch(message: bytes) -> Batch:
         further.reports,
         further.presences,
         further.gestures,
+        further.looks,
     )
 
 

@@ -12,6 +12,7 @@ import msgpack
 import numpy as np
 from pydantic import BaseModel, Field, TypeAdapter, ValidationError
 
+from esplanade.protocol.looks import NO_LOOK, KnownLook
 from esplanade.protocol.snapshot import RECORD
 from esplanade.protocol.steps import STEP
 from esplanade.server.link.frame_parts import FrameError
@@ -60,6 +61,10 @@ class _Further(BaseModel):
 
     gestures: dict[int, int] = Field(default_factory=dict)
     away: dict[int, bool] = Field(default_factory=dict)
+    looks: dict[int, KnownLook] = Field(default_factory=dict)
+    """Of those among the reshaped who have chosen one."""
+    hearers: dict[int, frozenset[int]] = Field(default_factory=dict)
+    """Of the lines that not everybody hears, by their places among all."""
 
 
 def encode_frame(frame: Frame) -> bytes:
@@ -114,12 +119,12 @@ def decode_frame(body: bytes) -> Frame:
         events=Events(
             doors=doors,
             pointing=pointing,
-            chat=[Line(*each) for each in chat],
+            chat=[Line(*each, to=further.hearers.get(k)) for k, each in enumerate(chat)],
             gestures=further.gestures,
             away=further.away,
             plans=plans,
         ),
-        reshaped=[Reshaped(*each) for each in reshaped],
+        reshaped=[Reshaped(*each, further.looks.get(each[0], NO_LOOK)) for each in reshaped],
         outcomes=[
             Outcome(command, at_tick, None if fault is None else Fault(*fault))
             for command, at_tick, fault in outcomes
@@ -150,8 +155,12 @@ def _rest_of(frame: Frame) -> list[Any]:
             for each in frame.outcomes
         ],
     ]
-    if events.gestures or events.away:
-        rest.append({"gestures": dict(events.gestures), "away": dict(events.away)})
+    looks = {each.id: each.look for each in frame.reshaped if each.look != NO_LOOK}
+    hearers = {k: sorted(line.to) for k, line in enumerate(events.chat) if line.to is not None}
+    manners = {"gestures": dict(events.gestures), "away": dict(events.away)}
+    further = {**manners, "looks": looks, "hearers": hearers}
+    if any(further.values()):
+        rest.append({name: told for name, told in further.items() if told})
     return rest
 
 

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from esplanade.protocol.looks import Look
 from esplanade.server.net.newcomers import MAX_JOINS_PER_TICK
 from esplanade.server.net.person import Person
 from esplanade.server.net.session import Session
@@ -20,6 +21,7 @@ class Arrival:
     name: str
     at: Point
     """The place nearest to which they stand, x, y, z, metres."""
+    look: Look
     zone: str
     """The name of the zone that they come into."""
     portal: str
@@ -44,7 +46,8 @@ class Arrivals:
     def expect(self, ticket: int, arrival: Arrival) -> None:
         """Keep a place for somebody, and let them in with one of the next ticks."""
         self._expected[ticket] = arrival
-        self._joins.append(Join(ticket, arrival.name, arrival.at, anywhere=True, id=arrival.id))
+        name, at, look = arrival.name, arrival.at, arrival.look
+        self._joins.append(Join(ticket, name, at, anywhere=True, id=arrival.id, look=look))
 
     def joins(self) -> list[Join]:
         """Inputs by which a few of them come in, each once."""

@@ -132,7 +132,11 @@ def _seen(news: News) -> Iterator[tuple[bytes, list[int]]]:
         yield frames.message(Point(id=actor, target=target)), viewers
     for body, viewers in news.reshaped:
         reshape = Reshape(
-            id=body.id, radius=body.radius_m, leg_m=body.leg_m, stature_m=body.stature_m
+            id=body.id,
+            radius=body.radius_m,
+            leg_m=body.leg_m,
+            stature_m=body.stature_m,
+            look=body.look,
         )
         yield frames.message(reshape), viewers
     for avatar, (is_away, viewers) in news.away.items():

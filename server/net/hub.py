@@ -5,6 +5,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from esplanade.protocol import ByeCode, CloseCode, ErrorCode, ProtocolError
+from esplanade.protocol.looks import Look
 from esplanade.protocol.messages import Bye, Hello
 from esplanade.server.checkpoint.returning import Left
 from esplanade.server.checkpoint.seat_keeper import SeatKeeper
@@ -265,6 +266,10 @@ class Hub:
     def name_of(self, avatar_id: int) -> str:
         """The name of somebody who has a seat."""
         return self._world.state.names[self._world.state.slot(avatar_id)]
+
+    def look_of(self, avatar_id: int) -> Look:
+        """The look of somebody who has a seat."""
+        return self._world.state.look(avatar_id)
 
     def stays(self, avatar_id: int) -> None:
         """Let somebody walk on in this zone whom another one does not let in."""

@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from typing import Final
 
+from esplanade.protocol.looks import NO_LOOK
 from esplanade.protocol.messages import Hello
 from esplanade.server.net.session import Session
 from esplanade.server.world.inputs import Join
@@ -50,7 +51,8 @@ class Newcomers:
         for ticket in at_the_door[: min(MAX_JOINS_PER_TICK, self._world.state.ids_left)]:
             session, hello = self._waiting[ticket]
             anywhere = session.is_operator or self._anywhere
-            found.append(Join(ticket, session.name, hello.at, anywhere))
+            look = hello.look or NO_LOOK
+            found.append(Join(ticket, session.name, hello.at, anywhere, look=look))
             self._asked.add(ticket)
         return found
 

@@ -14,6 +14,7 @@ from esplanade.server.world.inputs import (
     MoveDoor,
     Movement,
     SetAway,
+    SetLook,
     Stand,
     SteerMany,
     Watch,
@@ -35,6 +36,7 @@ class PendingInputs:
         self._watches: dict[int, Watch] = {}
         self._presences: dict[int, SetAway] = {}
         self._gestures: dict[int, MakeGesture] = {}
+        self._looks: dict[int, SetLook] = {}
         metrics.gauge(
             "movements_waiting",
             "Movements that wait for the next tick",
@@ -77,6 +79,10 @@ class PendingInputs:
         """Keep a gesture; the latest wins."""
         self._gestures[wish.id] = wish
 
+    def wear(self, wish: SetLook) -> None:
+        """Keep how somebody wants to look; the latest wins."""
+        self._looks[wish.id] = wish
+
     def stand(self, avatar_id: int) -> None:
         """Let an avatar stand; a movement that waits is void."""
         self._drop(avatar_id)
@@ -88,6 +94,7 @@ class PendingInputs:
         self._watches.pop(avatar_id, None)
         self._presences.pop(avatar_id, None)
         self._gestures.pop(avatar_id, None)
+        self._looks.pop(avatar_id, None)
 
     def _drop(self, avatar_id: int) -> bool:
         """Forget a movement; whether there was one."""
@@ -118,6 +125,7 @@ class PendingInputs:
         inputs.extend(self._watches.values())
         inputs.extend(self._presences.values())
         inputs.extend(self._gestures.values())
+        inputs.extend(self._looks.values())
         self._comings, self._doors, self._watches = [], {}, {}
-        self._presences, self._gestures = {}, {}
+        self._presences, self._gestures, self._looks = {}, {}, {}
         return inputs

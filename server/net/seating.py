@@ -24,7 +24,7 @@ from esplanade.server.net.welcomes import Welcomes
 from esplanade.server.settings import ServerSettings
 from esplanade.server.world.audience import Audience
 from esplanade.server.world.frame import Frame
-from esplanade.server.world.inputs import Attach, Detach, Join, Leave
+from esplanade.server.world.inputs import Attach, Detach, Join, Leave, SetLook
 from esplanade.server.world.zone import Zone
 
 NAMELESS: Final = "Guest"
@@ -93,7 +93,7 @@ class Seating:
         """
         seat = self.seats.find(hello.resume) if hello.resume else None
         if seat is not None:
-            self._resume(seat, session, hello.resume or "")
+            self._resume(seat, session, hello)
             return
         self._find_room()
         try:
@@ -156,7 +156,7 @@ class Seating:
             if self._keeper is not None:
                 self._keeper.confirm(seat.avatar_id, seat.address, tuple(seat.digests))
 
-    def _resume(self, seat: Seat[Session], session: Session, token: str) -> None:
+    def _resume(self, seat: Seat[Session], session: Session, hello: Hello) -> None:
         before = self.seats.occupy(seat, session, session.address)
         if before is not None:
             self._unbind(seat)
@@ -166,9 +166,11 @@ class Seating:
         session.avatar_id, session.name = seat.avatar_id, seat.name
         self.seats.walks_in(seat.avatar_id, session.operator)
         session.operator = session.operator or seat.operator
-        session.token = self.seats.renew(seat, token)
+        session.token = self.seats.renew(seat, hello.resume or "")
         session.ticket = self._newcomers.new_ticket()
         session.resumes = True
+        if hello.look is not None:
+            self._pending.wear(SetLook(seat.avatar_id, hello.look))
         self._pending.come(Detach(seat.avatar_id))
         if self._keeper is None:
             self._pending.come(Attach(seat.avatar_id, session.ticket))

@@ -19,8 +19,10 @@ from esplanade.protocol import (
     decode_client,
     peek_version,
 )
+from esplanade.protocol.looks import Look
 from esplanade.protocol.messages import (
     ChatLine,
+    ChooseLook,
     ClientMessage,
     Error,
     Hello,
@@ -50,6 +52,8 @@ from esplanade.server.settings import ServerSettings
 CHAT_BURST: Final = 5
 GESTURE_BURST: Final = 3
 GESTURES_PER_S: Final = 1.0
+LOOK_BURST: Final = 3
+LOOKS_PER_S: Final = 1.0
 _PAIR: Final = msgpack.Packer().pack_array_header(2)
 _MOVEMENT: Final = _PAIR + msgpack.packb(int(ClientCode.MOVE))
 """A movement begins with these bytes; it may begin otherwise too, but hardly any client does so."""
@@ -84,6 +88,9 @@ class SessionWishes(Protocol):
 
     def gesture(self, session: "Session", gesture: int) -> None:
         """Let the person's avatar make a gesture in the next tick."""
+
+    def look(self, session: "Session", look: Look) -> None:
+        """Let the person's avatar look otherwise from the next tick on."""
 
 
 class SessionRequests(Protocol):
@@ -166,6 +173,7 @@ class Session:
         self._hello_timeout_s = settings.hello_timeout_s
         self._lines = TokenBucket(settings.chat_rate, CHAT_BURST, now)
         self._gestures = TokenBucket(GESTURES_PER_S, GESTURE_BURST, now)
+        self._looks = TokenBucket(LOOKS_PER_S, LOOK_BURST, now)
         self._dismissal: asyncio.Task[None] | None = None
 
     @property
@@ -254,7 +262,8 @@ class Session:
         # The hello of a version that is not served may hold anything else.
         version = peek_version(frame)
         if version is not None and version not in SERVED_VERSIONS:
-            served = " and ".join(map(str, SERVED_VERSIONS))
+            *older, newest = map(str, SERVED_VERSIONS)
+            served = f"{', '.join(older)} and {newest}"
             raise ProtocolError(
                 ErrorCode.UNSUPPORTED_VERSION,
                 f"this server speaks version {served}, the client {version}",
@@ -322,10 +331,8 @@ class Session:
                 self._hub.wishes.report(self, message)
             case MutePerson():
                 self._hub.wishes.mute(self, message)
-            case Presence():
-                self._hub.wishes.presence(self, message.away)
-            case MakeGesture():
-                self._make_gesture(message)
+            case Presence() | MakeGesture() | ChooseLook():
+                self._take_manners(message)
             case Hello():
                 raise ProtocolError(ErrorCode.INVALID, "hello comes only once", CloseCode.INVALID)
 
@@ -335,11 +342,27 @@ class Session:
         else:
             self.refuse_line("rate", "you talk too fast")
 
+    def _take_manners(self, message: Presence | MakeGesture | ChooseLook) -> None:
+        match message:
+            case Presence():
+                self._hub.wishes.presence(self, message.away)
+            case MakeGesture():
+                self._make_gesture(message)
+            case ChooseLook():
+                self._choose_look(message)
+
     def _make_gesture(self, wish: MakeGesture) -> None:
         if self._gestures.take(asyncio.get_running_loop().time()):
             self._hub.wishes.gesture(self, wish.gesture)
         else:
             text = f"you make gestures too fast; {GESTURES_PER_S:g} in a second is enough"
+            self.tell(ProtocolError(ErrorCode.FLOODING, text, None))
+
+    def _choose_look(self, wish: ChooseLook) -> None:
+        if self._looks.take(asyncio.get_running_loop().time()):
+            self._hub.wishes.look(self, wish.look)
+        else:
+            text = f"you change your look too fast; {LOOKS_PER_S:g} in a second is enough"
             self.tell(ProtocolError(ErrorCode.FLOODING, text, None))
 
     def _broke_a_limit(self, closed: ConnectionClosed) -> bool:

@@ -1,4 +1,4 @@
-"""Wishes of people who are in: to move, to talk, to watch, gestures, doors, reports, silence."""
+"""Wishes of people who are in: to move, to talk, to watch, gestures, looks, doors, reports."""
 
 import asyncio
 from collections.abc import Mapping, Sequence
@@ -7,6 +7,7 @@ import structlog
 
 from esplanade.planning import MovedEnd
 from esplanade.protocol import ErrorCode, ProtocolError
+from esplanade.protocol.looks import Look
 from esplanade.protocol.messages import Move, MutePerson, Report, SetDoor, WalkTo
 from esplanade.server.net import frames
 from esplanade.server.net.departures import Departures
@@ -29,6 +30,7 @@ from esplanade.server.world.inputs import (
     MoveDoor,
     Movement,
     SetAway,
+    SetLook,
     Steer,
     Watch,
 )
@@ -197,3 +199,8 @@ class Wishes:
         """Let the person's avatar make a gesture in the next tick."""
         if session.avatar_id is not None:
             self._pending.make_gesture(MakeGesture(session.avatar_id, gesture))
+
+    def look(self, session: Session, look: Look) -> None:
+        """Let the person's avatar look otherwise from the next tick on."""
+        if session.avatar_id is not None:
+            self._pending.wear(SetLook(session.avatar_id, look))

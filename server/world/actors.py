@@ -10,6 +10,7 @@ from esplanade.actors import Explanation, ObservedPeople, Outcome, Population
 from esplanade.actors.blockers import Blocker
 from esplanade.actors.locomotion.footsteps.course import planned_places
 from esplanade.planning import Body
+from esplanade.server.world.frame import Line
 from esplanade.server.world.inputs import PlanEvery, PotentialDerived
 from esplanade.server.world.routes import Point
 from esplanade.server.world.state import ACTOR, Slots, State
@@ -58,6 +59,18 @@ class ActorAvatars:
             return False
         self._population.advance(people)
         return True
+
+    def said(self) -> list[Line]:
+        """The sentences that actors have said in the last tick to people whom they lead."""
+        return [
+            Line(
+                self._avatars[actor_id],
+                saying.text,
+                to=frozenset(who for who in saying.to if isinstance(who, int)),
+            )
+            for actor_id, saying in self._population.said
+            if actor_id in self._avatars
+        ]
 
     def place(self, moved: bool) -> dict[int, Point | None]:
         """Move the avatars; new actors come into the world. If none has moved, all stand.

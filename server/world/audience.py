@@ -114,7 +114,8 @@ class Audience:
                 away[avatar] = (True, known + [one for one in viewers if one not in known])
             for k, line in enumerate(frame.events.chat):
                 if line.id in self._avatars:
-                    heard[k] = Heard(line, self._avatars.name(line.id), seen[line.id])
+                    hearers = [v for v in seen[line.id] if line.to is None or v in line.to]
+                    heard[k] = Heard(line, self._avatars.name(line.id), hearers)
             chat = [heard[k] for k in sorted(heard)]
         with self._times.stage("encode"):
             snapshots = self._encode(frame.tick)

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from esplanade.protocol.entities import Entity, pack_constants
+from esplanade.protocol.looks import NO_LOOK, Look
 from esplanade.protocol.snapshot import RECORD, Records, pack_records
 from esplanade.protocol.steps import StepRecords
 from esplanade.server.world.outcomes import Outcome
@@ -30,7 +31,7 @@ class Entered:
 
 @dataclass(frozen=True)
 class Reshaped:
-    """An avatar that has another body from now on."""
+    """An avatar that has another body or another look from now on."""
 
     id: int
     radius_m: float
@@ -38,6 +39,7 @@ class Reshaped:
     stature_m: float
     constants: tuple[bytes, bytes]
     """As in `Entered`."""
+    look: Look = NO_LOOK
 
 
 @dataclass(frozen=True)
@@ -48,6 +50,8 @@ class Line:
     text: str
     number: int = 0
     """The number by which clients know it; 0 where it is given by whoever tells them."""
+    to: frozenset[int] | None = None
+    """Those who hear it, by their avatars; None for everyone who has the speaker in view."""
 
 
 @dataclass(frozen=True)
@@ -110,6 +114,7 @@ class Recorder:
         self._records = np.zeros(state.capacity, dtype=RECORD)
         self._arrivals = np.zeros(state.capacity, dtype=np.int64)
         self._bodies = np.zeros((state.capacity, 3))
+        self._looks = np.zeros_like(state.looks)
         self._away = np.zeros(state.capacity, dtype=np.bool_)
 
     def entered(self) -> list[Entered]:
@@ -120,19 +125,26 @@ class Recorder:
         self._arrivals[new] = state.arrivals[new]
         # Whoever has come back to the same place has its record told all the same.
         self._records[new] = np.zeros(1, dtype=RECORD)
-        self._bodies[new] = self._bodies_of(new)
+        self._bodies[new], self._looks[new] = self._bodies_of(new), state.looks[new]
         self._away[new] = False
         return [self._describe(slot) for slot in new[np.argsort(state.ids[new])].tolist()]
 
     def reshaped(self) -> list[Reshaped]:
-        """The avatars that have another body than at the last call of this or of `entered`."""
-        live = self._state.live()
-        bodies = self._bodies_of(live)
+        """The avatars that have another body or look than at the last call of this or `entered`."""
+        state = self._state
+        live = state.live()
+        bodies, looks = self._bodies_of(live), state.looks[live]
         changed = (bodies != self._bodies[live]).any(axis=1)
-        self._bodies[live] = bodies
+        changed |= (looks != self._looks[live]).any(axis=1)
+        self._bodies[live], self._looks[live] = bodies, looks
         return [
             Reshaped(
-                int(self._state.ids[slot]), radius, leg, stature, self._describe(slot).constants
+                int(state.ids[slot]),
+                radius,
+                leg,
+                stature,
+                self._describe(slot).constants,
+                Look(*state.looks[slot].tolist()),
             )
             for slot, (radius, leg, stature) in zip(
                 live[changed].tolist(), bodies[changed].tolist(), strict=True
@@ -154,6 +166,7 @@ class Recorder:
             "records": self._records[live],
             "arrivals": self._arrivals[live],
             "bodies": self._bodies[live],
+            "looks": self._looks[live],
             "away": self._away[live],
         }
 
@@ -170,6 +183,7 @@ class Recorder:
         self._records[live] = np.asarray(saved["records"], dtype=RECORD)
         self._arrivals[live], self._bodies[live] = saved["arrivals"], saved["bodies"]
         self._away[live] = saved["away"]
+        self._looks[live] = saved["looks"]
 
     def _bodies_of(self, slots: Slots) -> Floats:
         """Radius, leg and stature, float64 (N, 3), metres."""
@@ -206,6 +220,7 @@ class Recorder:
             radius=float(state.radii[slot]),
             leg_m=float(state.legs_m[slot]),
             stature_m=float(state.statures_m[slot]),
+            look=Look(*state.looks[slot].tolist()),
         )
         return Entered(entity.id, kind, name, pack_constants(entity))
 

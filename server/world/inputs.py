@@ -11,6 +11,7 @@ from esplanade.actors.behaviour import Target
 from esplanade.actors.potential_pool import GoalKey, RenewedPotential
 from esplanade.planning.grid.bodies_change import BodiesChange
 from esplanade.planning.grid.door_change import DoorChange
+from esplanade.protocol.looks import NO_LOOK, Look
 from esplanade.server.world.routes import Point, Route
 
 
@@ -26,6 +27,7 @@ class Join:
     """Whether the wished place itself is given; otherwise the spawn point nearest to it is."""
     id: int | None = None
     """The id of somebody who comes from another zone and keeps it; None for a new one."""
+    look: Look = NO_LOOK
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,6 +121,14 @@ class MakeGesture:
 
     id: int
     gesture: int
+
+
+@dataclass(frozen=True, slots=True)
+class SetLook:
+    """A person's avatar looks otherwise from now on."""
+
+    id: int
+    look: Look
 
 
 @dataclass(frozen=True, slots=True)
@@ -264,7 +274,9 @@ class Still:
 
 
 Movement = Steer | Follow
-OfPerson = Attach | Detach | Leave | Stand | Steer | Follow | Say | Watch | SetAway | MakeGesture
+OfPerson = (
+    Attach | Detach | Leave | Stand | Steer | Follow | Say | Watch | SetAway | MakeGesture | SetLook
+)
 """Inputs of one avatar, by its `id`."""
 OneActorCommand = (
     SetParameters

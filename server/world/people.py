@@ -49,8 +49,9 @@ class People:
 
     def stop(self, slot: int) -> None:
         """Stand still, without any intention."""
-        self._velocities[slot] = 0.0
+        self._velocities[slot] = self._targets[slot] = 0.0
         self._following[slot] = False
+        self._blocked[slot] = 0
         self._routes.pop(slot, None)
 
     def steer(self, slot: int, wish: Steer) -> None:

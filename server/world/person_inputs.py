@@ -15,11 +15,13 @@ from esplanade.server.world.inputs import (
     OfPerson,
     Say,
     SetAway,
+    SetLook,
     Stand,
     Steer,
     SteerMany,
     Watch,
 )
+from esplanade.server.world.looks import Looks
 from esplanade.server.world.people import People
 from esplanade.server.world.rules import Rules
 from esplanade.server.world.spawning import Spawning
@@ -36,12 +38,14 @@ class PersonInputs:
         spawning: Spawning,
         grid: LayeredGrid,
         rules: Rules,
+        looks: Looks,
     ) -> None:
         self._state = state
         self._people = people
         self._spawning = spawning
         self._grid = grid
         self._rules = rules
+        self._looks = looks
         self._watched: dict[int, int] = {}
         self.begin_frame()
 
@@ -82,6 +86,7 @@ class PersonInputs:
         layer = self._grid.layer_at(place[:2], place[2])
         radius_m = self._rules.person_radius_m
         slot = self._state.add(PERSON, join.name, place, layer, radius_m, join.id)
+        self._looks.wear(slot, join.look)
         self._people.stop(slot)
         self.joined.append((join.ticket, int(self._state.ids[slot])))
 
@@ -117,6 +122,8 @@ class PersonInputs:
                 self._state.away[slot] = item.away
             case MakeGesture():
                 self.gestures[item.id] = item.gesture
+            case SetLook():
+                self._looks.wear(slot, item.look)
 
     def steer(self, wish: SteerMany) -> None:
         """Take in which ways people want to walk; those who are gone are left out."""

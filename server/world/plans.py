@@ -4,7 +4,7 @@ import numpy as np
 
 from esplanade.actors import Explanation
 from esplanade.protocol import Outcome, Reason
-from esplanade.protocol.messages import Blocker, Circle, Plan
+from esplanade.protocol.messages import Blocker, Circle, Plan, Tour
 
 
 def plan(tick: int, actor: int, explanation: Explanation) -> Plan:
@@ -28,7 +28,17 @@ def plan(tick: int, actor: int, explanation: Explanation) -> Plan:
         blocker=blocker(explanation),
         outcome=None if explanation.outcome is None else Outcome(explanation.outcome),
         in_the_way=in_the_way(explanation),
+        tour=tour(explanation),
     )
+
+
+def tour(explanation: Explanation) -> Tour | None:
+    """Return the tour of a guide as it goes over the wire."""
+    led = explanation.tour
+    if led is None:
+        return None
+    followers = sorted(who for who in led.followers if isinstance(who, int))
+    return Tour(stops=list(led.stops), next=led.next, followers=followers)
 
 
 def blocker(explanation: Explanation) -> Blocker | None:

@@ -100,6 +100,7 @@ AS_THEY_ARE: Final[dict[str, type[Any]]] = {
     "watch": live.Watch,
     "set_away": live.SetAway,
     "make_gesture": live.MakeGesture,
+    "set_look": live.SetLook,
     "add_actors": live.AddActors,
     "remove_actors": live.RemoveActors,
     "change_behaviour": live.ChangeBehaviour,

@@ -9,10 +9,12 @@ import numpy as np
 from esplanade.actors import ActorSpec, Population
 from esplanade.actors.saved_minds import chance_as_text, load_chance
 from esplanade.planning import LayeredGrid
+from esplanade.protocol.looks import NO_LOOK, Look, known_look
 from esplanade.server.world.actor_commands import ActorCommands
 from esplanade.server.world.actors import ActorAvatars
 from esplanade.server.world.contacts import Contacts
 from esplanade.server.world.doors import Doors
+from esplanade.server.world.looks import Looks
 from esplanade.server.world.routes import Point
 from esplanade.server.world.spawning import Spawning
 from esplanade.server.world.state import PERSON, State
@@ -44,6 +46,7 @@ class SavedZone:
         contacts: Contacts,
         person_radius_m: float,
         grid: LayeredGrid,
+        looks: Looks,
     ) -> None:
         self._state = state
         self._population = population
@@ -54,6 +57,7 @@ class SavedZone:
         self._contacts = contacts
         self._person_radius_m = person_radius_m
         self._grid = grid
+        self._looks = looks
         self._spec_texts: dict[object, tuple[ActorSpec, str]] = {}
         """Specifications as text, made anew for those that are others."""
 
@@ -66,6 +70,7 @@ class SavedZone:
                 "ids": state.ids[people],
                 "places": np.column_stack([state.positions[people], state.heights[people]]),
                 "headings": state.headings[people],
+                "looks": state.looks[people],
             },
             "specs": self._specs(),
             "avatars": dict(self._avatars.avatars),
@@ -97,7 +102,7 @@ class SavedZone:
         self._contacts.actor_person = int(with_people)
         self._contacts.actor_actor = int(among_actors)
 
-    def put(self, person: Returning, heading: float = 0.0) -> None:
+    def put(self, person: Returning, heading: float = 0.0, look: Look = NO_LOOK) -> None:
         """Let a person's avatar stand where it was, or on the nearest ground where it can.
 
         It waits for its person, who is away.
@@ -108,18 +113,23 @@ class SavedZone:
         layer = self._grid.layer_at(place[:2], place[2])
         slot = self._state.add(PERSON, person.name, place, layer, self._person_radius_m, person.id)
         self._state.headings[slot] = heading
+        self._looks.wear(slot, look)
         self._state.away[slot] = True
 
     def _load_people(self, saved: Mapping[str, Any], people: Sequence[Returning]) -> None:
         ids, places, headings = (np.asarray(saved[k]) for k in ("ids", "places", "headings"))
+        # Checkpoints of older programs know of no looks.
+        looks = [known_look(look) for look in np.asarray(saved.get("looks", ())).tolist()]
         known = {
-            int(avatar): (tuple(map(float, place)), float(heading))
-            for avatar, place, heading in zip(ids, places, headings, strict=True)
+            int(avatar): (tuple(map(float, place)), float(heading), look)
+            for avatar, place, heading, look in zip(
+                ids, places, headings, looks or [NO_LOOK] * len(ids), strict=True
+            )
         }
         for person in people:
-            place, heading = known.get(person.id, (person.place, 0.0))
+            place, heading, look = known.get(person.id, (person.place, 0.0, NO_LOOK))
             x, y, z = place
-            self.put(person._replace(place=(x, y, z)), heading)
+            self.put(person._replace(place=(x, y, z)), heading, look)
 
     def _check_ids(self, ids: Sequence[int]) -> None:
         if len(set(ids)) < len(ids):

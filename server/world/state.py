@@ -8,6 +8,7 @@ import numpy.typing as npt
 
 from esplanade.actors.locomotion.footsteps.course import AHEAD
 from esplanade.protocol import Kind
+from esplanade.protocol.looks import NO_LOOK, Look
 
 Floats = npt.NDArray[np.float64]
 Slots = npt.NDArray[np.int64]
@@ -33,6 +34,7 @@ _COLUMNS: Final = (
     "reasons",
     "radii",
     "away",
+    "looks",
     "scales",
     "strides",
     "legs_m",
@@ -59,7 +61,7 @@ class State:
     scene's ground, metres; `ahead` is where each is going, as in
     `esplanade.actors.locomotion.Course`; legs and statures are those drawn for an avatar, `scales`
     times as long, and `strides` the lengths of its steps against those of a free walk. `away` marks
-    those who wait for their people.
+    those who wait for their people; `looks` holds the numbers of `esplanade.protocol.looks.Look`.
     """
 
     def __init__(self, capacity: int) -> None:
@@ -82,6 +84,7 @@ class State:
         self.legs_m = np.zeros(capacity)
         self.statures_m = np.zeros(capacity)
         self.away = np.zeros(capacity, dtype=np.bool_)
+        self.looks = np.zeros((capacity, len(NO_LOOK)), dtype=np.uint8)
         self.names = [""] * capacity
         self._slots: dict[int, int] = {}
         self._arrived = 0
@@ -117,6 +120,10 @@ class State:
         """The slots of avatars, int (N,); -1 of those who are not here."""
         slots = self._slots
         return np.array([slots.get(avatar_id, -1) for avatar_id in avatar_ids], dtype=np.int64)
+
+    def look(self, avatar_id: int) -> Look:
+        """The look of an avatar that is here."""
+        return Look(*self.looks[self._slots[avatar_id]].tolist())
 
     def live(self) -> Slots:
         """Slots of everyone, ascending, int (N,)."""
@@ -167,6 +174,7 @@ class State:
         self.radii[slot] = radius_m
         self.scales[slot] = self.strides[slot] = 1.0
         self.away[slot] = False
+        self.looks[slot] = NO_LOOK
         self.names[slot] = name
         self._slots[avatar_id] = slot
         return slot

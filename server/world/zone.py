@@ -27,7 +27,7 @@ from esplanade.server.world.command_checks import fault_in
 from esplanade.server.world.contacts import Contacts
 from esplanade.server.world.doors import Doors
 from esplanade.server.world.exact_state import ExactState, Parts
-from esplanade.server.world.frame import Events, Frame, Recorder
+from esplanade.server.world.frame import Events, Frame, Line, Recorder
 from esplanade.server.world.greetings import Greetings
 from esplanade.server.world.inputs import (
     ActorCommand,
@@ -46,6 +46,7 @@ from esplanade.server.world.inputs import (
     Still,
 )
 from esplanade.server.world.latest_steps import LatestSteps
+from esplanade.server.world.looks import Looks
 from esplanade.server.world.outcomes import Fault, Outcome
 from esplanade.server.world.people import People
 from esplanade.server.world.person_inputs import PersonInputs
@@ -123,7 +124,8 @@ class Zone:
         self._spawning = Spawning(
             scene, grid, rules.person_clearance_m, np.random.SeedSequence(seed)
         )
-        self._persons = PersonInputs(self.state, self._people, self._spawning, grid, rules)
+        looks = Looks(self.state, seed)
+        self._persons = PersonInputs(self.state, self._people, self._spawning, grid, rules, looks)
         self._begin_frame()
         self._observed = NOBODY
         self._saved = SavedZone(
@@ -136,6 +138,7 @@ class Zone:
             self.contacts,
             rules.person_radius_m,
             grid,
+            looks,
         )
         self._exact = ExactState(
             Parts(
@@ -226,7 +229,7 @@ class Zone:
                 acks=self._persons.acks,
                 records=self._recorder.changed(),
                 steps=self.steps.begun_in(self.tick, self.state.live()),
-                events=self._events(pointing),
+                events=self._events(pointing, self._actors.said() if actors_moved else []),
                 outcomes=self._commands.outcomes,
                 actors_stood=not (actors_moved or self._still) and len(self._population) > 0,
             )
@@ -496,12 +499,12 @@ class Zone:
             case _:
                 self._persons.gone(self._commands.take(item, self.tick))
 
-    def _events(self, pointing: dict[int, Point | None]) -> Events:
+    def _events(self, pointing: dict[int, Point | None], said: list[Line]) -> Events:
         gestures = self._persons.gestures
         return Events(
             doors=self._moved_doors,
             pointing=pointing,
-            chat=self._persons.chat,
+            chat=[*self._persons.chat, *said],
             gestures=gestures | self._greetings.answers(gestures),
             away=self._recorder.away(),
             plans=self._plans(),

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from esplanade.actors import Behaviour, GoTo, Guide, Idle, Patrol, Perception, Wander
+from esplanade.actors.tours import Tour
 from esplanade.planning import Body, LayeredGrid, Place, Polygon, Scene
 from tests.actors.worlds import block, plaza
 from tests.planning.storeys import storeyed
@@ -258,3 +259,26 @@ def test_a_guide_explains_nothing_to_nobody_or_to_who_is_left_behind() -> None:
 def test_others_do_not_point(behaviour: Behaviour) -> None:
     behaviour.update(seeing(0.0, arrived=True, people=near(1.0), scene=SIGHTS))
     assert behaviour.points_at is None
+
+
+def test_a_guide_says_where_one_is_and_where_one_goes_to_those_whom_it_leads() -> None:
+    guide = Guide(["gate", (1.0, 2.0, 0.0)], pause_s=5.0, join_after_s=2.0)
+    assert said(guide, 0.0) == said(guide, 1.0) == []
+    assert said(guide, 2.0) == ["Welcome to the tour of 2 stops."]
+    assert [saying.to for saying in guide.says] == [{"ann"}]
+    assert said(guide, 3.0, arrived=True) == ["This is gate, stop 1 of 2."]
+    assert said(guide, 7.9, arrived=True) == []
+    assert said(guide, 8.0, arrived=True) == ["We go on to stop 2."]
+    assert said(guide, 9.0, arrived=True) == ["This is stop 2 of 2."]
+    assert guide.tour == Tour(("gate", ""), 1, frozenset({"ann"}))
+    # To nobody it says nothing.
+    guide.update(seeing(10.0, arrived=True, people={}))
+    assert guide.update(seeing(20.0, arrived=True, people={})) == GATE
+    assert guide.says == ()
+    assert Patrol(["gate"]).tour is None
+
+
+def said(guide: Guide, time_s: float, *, arrived: bool = False) -> list[str]:
+    """The sentences of a guide beside whom somebody stands."""
+    guide.update(seeing(time_s, arrived=arrived, people=near(2.0)))
+    return [saying.text for saying in guide.says]

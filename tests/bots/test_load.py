@@ -4,6 +4,7 @@ import asyncio
 from dataclasses import replace
 
 from esplanade.bots.load import LoadJob
+from esplanade.bots.looks import look_of
 from esplanade.bots.tally import Tally
 from esplanade.protocol import ErrorCode, encode
 from esplanade.protocol.codes import CloseCode
@@ -42,6 +43,9 @@ async def test_visitors_join_walk_measure_and_leave() -> None:
     assert {person.hello.name for person in server.all_people} == {
         f"Visitor {number}" for number in range(1, 7)
     }
+    looks = {person.hello.name: person.hello.look for person in server.all_people}
+    assert looks == {f"Visitor {index + 1}": look_of(JOB.seed, index) for index in range(6)}
+    assert len(set(looks.values())) == 6
 
 
 async def test_visitors_leave_by_themselves_when_the_time_is_over() -> None:

@@ -27,6 +27,7 @@ from esplanade.protocol import (
     encode_steps,
 )
 from esplanade.protocol.codes import MAX_CHAT_CHARS, MAX_NAME_CHARS
+from esplanade.protocol.looks import MOST, SHORTEST_CM, Look
 from esplanade.protocol.messages import (
     Admission,
     Away,
@@ -35,6 +36,7 @@ from esplanade.protocol.messages import (
     Census,
     Chat,
     ChatLine,
+    ChooseLook,
     Circle,
     Doors,
     Enter,
@@ -87,6 +89,8 @@ FROM_CLIENT: Final[tuple[FromClient, ...]] = (
     MutePerson(id=9, muted=True),
     Presence(away=True),
     MakeGesture(gesture=Gesture.CLAP),
+    Hello(name="Ann", version=VERSION, look=Look(1, 2, 3, 4, 5, 171)),
+    ChooseLook(look=Look(12, 0, 5, 8, 0, 200)),
 )
 
 FROM_SERVER: Final[tuple[FromServer, ...]] = (
@@ -162,6 +166,7 @@ FROM_SERVER: Final[tuple[FromServer, ...]] = (
     Point(id=8, target=(4.5, -2.0, 1.25)),
     Point(id=8, target=None),
     Reshape(id=8, radius=0.3, leg_m=0.75, stature_m=1.5),
+    Reshape(id=8, radius=0.3, leg_m=0.75, stature_m=1.5, look=Look(1, 2, 3, 4, 5, 150)),
     Travel(zone="hall", portal="to the yard"),
     Away(id=8, away=True),
     GestureMade(id=8, gesture=Gesture.WAVE),
@@ -177,6 +182,7 @@ def vectors() -> dict[str, Any]:
             table.__name__: {member.name: member.value for member in table}
             for table in (ClientCode, ServerCode, Reason, Outcome, Gesture, CloseCode)
         },
+        "looks": {"most": list(MOST), "shortest_cm": SHORTEST_CM},
         "kinds": _values(Kind),
         "client": [_vector(message) for message in FROM_CLIENT],
         "server": [_vector(message) for message in FROM_SERVER],

@@ -34,11 +34,12 @@ async def served(**changes: Any) -> AsyncIterator[Running]:
         "host": "127.0.0.1",
         "port": 0,
         "private_port": 0,
-        "actors": 0,
         "log_level": "warning",
         "hello_timeout_s": 60.0,
         "drop_seconds": PATIENCE_S,
     }
+    if "roster" not in changes:
+        values["actors"] = 0
     async with running(ServerSettings(**{**values, **changes})) as server:
         yield server
 

@@ -13,12 +13,14 @@ from esplanade.protocol.codes import (
     MAX_NAME_CHARS,
     MAX_TOKEN_CHARS,
 )
+from esplanade.protocol.looks import MOST, SHORTEST_CM, Look
 from esplanade.protocol.messages import (
     Blocker,
     Bye,
     Census,
     Chat,
     ChatLine,
+    ChooseLook,
     Circle,
     Doors,
     Enter,
@@ -41,6 +43,7 @@ from esplanade.protocol.messages import (
     SetDoor,
     Snapshot,
     StepBlock,
+    Tour,
     Travel,
     WalkTo,
     Watch,
@@ -58,6 +61,11 @@ places = st.tuples(floats, floats, floats)
 tokens = st.text(st.characters(codec="utf-8"), max_size=MAX_TOKEN_CHARS)
 numbers = st.integers(0, MAX_LINE_NUMBER)
 arguments = st.dictionaries(texts, texts | floats | st.booleans() | st.none(), max_size=3)
+looks = st.builds(
+    Look,
+    **{name: st.integers(0, most) for name, most in zip(Look._fields[:-1], MOST, strict=False)},
+    stature_cm=st.just(0) | st.integers(SHORTEST_CM, MOST.stature_cm),
+)
 doors = st.dictionaries(texts, st.booleans(), max_size=3)
 
 
@@ -93,6 +101,7 @@ client_messages: st.SearchStrategy[FromClient] = st.one_of(
         at=st.none() | st.tuples(metres, metres, metres),
         operator=st.none() | tokens,
         steps=st.booleans(),
+        look=st.none() | looks,
     ),
     st.builds(Move, seq=u32, direction=st.floats(-1000, 1000), speed=st.floats(0, 100)),
     st.builds(WalkTo, seq=u32, x=metres, y=metres, z=metres),
@@ -106,6 +115,7 @@ client_messages: st.SearchStrategy[FromClient] = st.one_of(
     ),
     st.builds(Report, id=u32, line=st.none() | numbers, text=lines(MAX_CHAT_CHARS)),
     st.builds(MutePerson, id=u32, muted=st.booleans()),
+    st.builds(ChooseLook, look=looks),
 )
 
 entities = st.builds(
@@ -122,6 +132,7 @@ entities = st.builds(
     leg_m=floats,
     stature_m=floats,
     points_at=st.none() | places,
+    look=looks,
 )
 blockers = st.builds(
     Blocker,
@@ -129,6 +140,9 @@ blockers = st.builds(
     id=st.none() | u32,
     door=st.none() | texts,
     away=st.none() | floats,
+)
+tours = st.builds(
+    Tour, stops=st.lists(texts, max_size=3), next=u32, followers=st.lists(u32, max_size=3)
 )
 circles = st.builds(Circle, x=floats, y=floats, z=floats, radius=floats)
 
@@ -177,11 +191,12 @@ server_messages: st.SearchStrategy[FromServer] = st.one_of(
         blocker=st.none() | blockers,
         outcome=st.none() | st.sampled_from(Outcome),
         in_the_way=st.none() | blockers,
+        tour=st.none() | tours,
     ),
     st.builds(Census, people=u32, actors=u32),
     st.builds(Doors, doors=doors),
     st.builds(StepBlock, tick=u32, block=st.binary(max_size=500)),
     st.builds(Point, id=u32, target=st.none() | places),
-    st.builds(Reshape, id=u32, radius=floats, leg_m=floats, stature_m=floats),
+    st.builds(Reshape, id=u32, radius=floats, leg_m=floats, stature_m=floats, look=looks),
     st.builds(Travel, zone=texts, portal=texts),
 )

@@ -26,7 +26,9 @@ from esplanade.protocol import codes as table
 from esplanade.protocol.codec import MAX_BLOCK_BYTES, SNAPSHOT_HEAD_BYTES, STEPS_HEAD_BYTES
 from esplanade.protocol.codes import ClientCode, CloseCode, ServerCode
 from esplanade.protocol.keys_between import FAR
+from esplanade.protocol.looks import MOST, SHORTEST_CM, Look
 from esplanade.protocol.messages import (
+    Blocker,
     Circle,
     Entity,
     FromClient,
@@ -34,6 +36,7 @@ from esplanade.protocol.messages import (
     Plan,
     Snapshot,
     StepBlock,
+    Tour,
 )
 from esplanade.protocol.snapshot import (
     MAX_EXTENT_M,
@@ -118,10 +121,13 @@ def test_every_field_is_documented_with_its_type(model: type[FromClient | FromSe
 
 
 @pytest.mark.parametrize(
-    ("title", "model"), [("enter", Entity), ("plan", Circle)], ids=["entity", "circle"]
+    ("title", "place", "model"),
+    [("enter", 1, Entity), ("plan", 1, Circle), ("plan", 2, Blocker), ("plan", 3, Tour)],
 )
-def test_every_field_of_a_part_is_documented(title: str, model: type[BaseModel]) -> None:
-    rows = tables(section(title))[1]
+def test_every_field_of_a_part_is_documented(
+    title: str, place: int, model: type[BaseModel]
+) -> None:
+    rows = tables(section(title))[place]
     assert [row["Field"] for row in rows] == list(model.model_fields)
     for row in rows:
         assert row["Type"] == documented_type(model.model_fields[row["Field"]].annotation)
@@ -146,6 +152,8 @@ def documented_type(kind: Any) -> str:
         return "list of " + (part if part.startswith("[") else re.sub(r"^(\w+)", r"\1s", part))
     if origin is dict or (isinstance(kind, type) and issubclass(kind, BaseModel)):
         return "map"
+    if kind is Look:
+        return "array of six integers"
     if isinstance(kind, type) and issubclass(kind, int):
         return "integer"
     return "text"
@@ -168,6 +176,14 @@ def test_reasons_errors_and_close_codes() -> None:
     assert [(int(row["Close code"]), row["Name"]) for row in closes] == [
         (code.value, code.name.lower()) for code in CloseCode
     ]
+
+
+def test_the_parts_of_a_look() -> None:
+    (parts,) = tables(section("Looks"))
+    assert [(int(row["Place"]), row["Name"]) for row in parts] == list(enumerate(Look._fields))
+    ranges = [f"0 to {most}" for most in MOST[:-1]]
+    ranges.append(f"0, or {SHORTEST_CM} to {MOST.stature_cm}")
+    assert [row["Range"] for row in parts] == ranges
 
 
 def test_names_in_running_text() -> None:
@@ -223,7 +239,8 @@ def test_the_layout_of_a_record(title: str, place: int, record: np.dtype[np.void
 
 def test_versions() -> None:
     text = " ".join(section("Versions").split())
-    served = " and ".join(map(str, SERVED_VERSIONS))
+    *older, newest = map(str, SERVED_VERSIONS)
+    served = f"{', '.join(older)} and {newest}"
     assert f"here {VERSION}." in text
     assert f"This server serves version {served}." in text
     # From version 4 on the server serves the version before its own, too.

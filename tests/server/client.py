@@ -9,6 +9,7 @@ from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed
 
 from esplanade.protocol import VERSION, decode_server, encode
+from esplanade.protocol.looks import Look
 from esplanade.protocol.messages import (
     Enter,
     Entity,
@@ -17,6 +18,7 @@ from esplanade.protocol.messages import (
     Hello,
     Leave,
     Move,
+    Reshape,
     ServerMessage,
     Snapshot,
     Welcome,
@@ -70,6 +72,10 @@ class Client:
                 self.welcome, self.entities, self.positions = message, {}, {}
             case Enter():
                 self.entities.update({entity.id: entity for entity in message.entities})
+            case Reshape():
+                told = message.model_dump(include={"radius", "leg_m", "stature_m"})
+                changed = {**told, "look": message.look}
+                self.entities[message.id] = self.entities[message.id].model_copy(update=changed)
             case Leave():
                 for gone in message.ids:
                     del self.entities[gone]
@@ -146,13 +152,14 @@ async def joined(
     at: tuple[float, float, int] | None = None,
     resume: str | None = None,
     source: str = "127.0.0.1",
+    look: Look | None = None,
 ) -> AsyncIterator[Client]:
     """A person in the world who has had a first snapshot; an operator if `at` is given.
 
     `source` is the address that the client connects from.
     """
     key = None if at is None else PLACING_KEY
-    hello = Hello(name=name, version=VERSION, at=at, resume=resume, operator=key)
+    hello = Hello(name=name, version=VERSION, at=at, resume=resume, operator=key, look=look)
     async with connected(port, source) as client:
         await client.send(hello)
         await client.until(Snapshot)

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from esplanade.actors import ActorParameters, Explanation, Population, Reason
+from esplanade.actors.tours import Saying
 from esplanade.planning import AgentTable
 
 Place = tuple[float, float, float]
@@ -24,6 +25,7 @@ class ScriptedPopulation:
         self.velocities: dict[Hashable, tuple[float, float]] = {}
         self.pointed_at: dict[Hashable, Place] = {}
         self.doors_wanted: dict[str, bool] = {}
+        self.said: list[tuple[Hashable, Saying]] = []
         self.observed: Mapping[Hashable, Place] = {}
         self.trips = 0
         self.failing = False

@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 
 from esplanade.protocol.commands import COMMAND
+from esplanade.protocol.looks import Look
 from esplanade.server.accounts.identity import Identity
 from esplanade.server.accounts.rights import Right
 from esplanade.server.app import Running
@@ -25,6 +26,7 @@ from tests.server.zones import BEFORE_GATE, YARD, until, write_town
 
 EAST = 0.0
 BY = Identity(account="olga", role="admin", rights=frozenset(Right), via="token")
+LOOK = Look(shirt=3, hair=4, skin=7, stature_cm=185)
 
 
 def died(data: Path, to: Path) -> Path:
@@ -68,7 +70,7 @@ async def test_everyone_is_where_they_were(serving: Serving, tmp_path: Path) -> 
     town, data = write_town(tmp_path), tmp_path / "world"
     async with (
         serving(scene=None, world=town, data=data, actors=2) as server,
-        joined(server.port, "Ann", at=BEFORE_GATE) as ann,
+        joined(server.port, "Ann", at=BEFORE_GATE, look=LOOK) as ann,
         joined(server.port, "Bob", at=(6.0, 6.0, 0)) as bob,
     ):
         token = await through_the_gate(server, ann)
@@ -89,6 +91,8 @@ async def test_everyone_is_where_they_were(serving: Serving, tmp_path: Path) -> 
             assert (again.id, again.welcome.resumed) == (ann.id, True)
             assert again.welcome.scene["name"] == "The hall"
             assert math.dist(again.position, where[:2]) < 0.2
+            assert again.entities[ann.id].look == LOOK
+            assert round(again.entities[ann.id].stature_m, 3) == 1.85
         async with joined(server.port, "Eve") as eve:
             assert eve.id > max(ann.id, bob.id)
         assert [chain.fault for chain in await verify(server.kept.store)] == [None] * 3

@@ -37,7 +37,7 @@ interface Seen extends Omit<Avatar, "animator"> {
   readonly gesturing: boolean;
 }
 
-function seen({ id, kind, name, radius, own, pose, away, animator }: Avatar): Seen {
+function seen({ id, kind, name, radius, look, own, pose, away, animator }: Avatar): Seen {
   const { left, right } = animator.body;
   const pointing = animator.pointing.target !== null;
   const drawn = animator.planted ? animator.step : null;
@@ -47,7 +47,7 @@ function seen({ id, kind, name, radius, own, pose, away, animator }: Avatar): Se
   };
   const feet = { left: left.foot, right: right.foot };
   const gesturing = animator.gesturing.active;
-  return { id, kind, name, radius, own, pose, away, feet, step, pointing, gesturing };
+  return { id, kind, name, radius, look, own, pose, away, feet, step, pointing, gesturing };
 }
 
 declare global {

@@ -25,6 +25,7 @@ const TARGET = "#d33f2f";
 export class MapView implements Picture {
   readonly placing = new Cost();
   readonly qualityLevel = 0;
+  readonly drawsFigures = false;
   readonly camera = {
     yaw: NORTH,
     orbit: (): void => undefined,

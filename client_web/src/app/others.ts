@@ -96,6 +96,11 @@ export class Others {
     return this.card.id;
   }
 
+  /** The one whom the person follows. */
+  get followedId(): number | null {
+    return this.following.id;
+  }
+
   isMuted(name: string): boolean {
     return this.mutes.has(name);
   }

@@ -21,6 +21,8 @@ export interface Picture {
   readonly skeletons: { show(shown: boolean): void };
   readonly placing: Cost;
   readonly qualityLevel: number;
+  /** Whether it shows people as figures. */
+  readonly drawsFigures: boolean;
   /** Show this world from now on. */
   enter(world: World, mesh?: Triangles | null): void;
   /** Turn the camera to where the own avatar sees people, or furthest. */

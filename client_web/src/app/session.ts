@@ -21,6 +21,7 @@ import { World } from "../world/world";
 import type { AddressWish } from "./address";
 import { Cost } from "./cost";
 import { Links } from "./links";
+import { Looks } from "./looks";
 import { Manners } from "./manners";
 import { Others } from "./others";
 import type { Picked, Picture } from "./picture";
@@ -47,10 +48,15 @@ export class Session {
   private readonly pace = new PaceBanner();
   private readonly minimap: Minimap;
   private readonly manners: Manners;
+  private readonly looks: Looks;
   private readonly others: Others;
   private readonly notices = new NoticeBanner();
   private readonly links: Links;
-  private readonly planPanel = new PlanPanel();
+  private readonly planPanel = new PlanPanel((wanted) => {
+    this.others.follow(wanted ? this.chosenId : null);
+    // On a small screen one sees where one goes; the bar that names the actor ends it, too.
+    if (wanted) Panel.makeRoom();
+  });
   private readonly planSwitch: Panel;
   /** The operator key; null for people without one. */
   private readonly operator: string | null;
@@ -140,6 +146,9 @@ export class Session {
         if (this.world) this.chat.note(surroundings(this.world, view.camera.yaw));
       },
     );
+    this.looks = new Looks(localStorage, calm, view.drawsFigures, (look) => {
+      this.connection.wear(look);
+    });
     byId("leave", HTMLButtonElement).addEventListener("click", () => {
       this.leave();
     });
@@ -197,7 +206,7 @@ export class Session {
 
   private greet(name: string, resume: string | null): void {
     const { operator, admission } = this;
-    this.connection.join({ name, resume, operator, admission });
+    this.connection.join({ name, resume, operator, admission, look: this.looks.choose() });
   }
 
   private stateChanged(state: ConnectionState): void {
@@ -209,6 +218,7 @@ export class Session {
       this.chat.note(this.travels ? arrivalIn(this.welcome) : greetingOf(this.welcome));
       this.travels = false;
       this.manners.begin(this.welcome);
+      this.looks.begun(this.welcome);
     }
     if (state.phase === "reconnecting") this.join.wait(state.text);
     if (state.phase === "refused") {
@@ -246,7 +256,7 @@ export class Session {
         world?.point(message.id, message.target);
         break;
       case "reshape":
-        world?.reshape(message.id, message.radius, message.leg_m, message.stature_m);
+        world?.reshape(message);
         break;
       case "away":
         world?.away(message.id, message.away);
@@ -393,7 +403,8 @@ export class Session {
     const name = this.chosenId === null ? null : (world.avatars.get(this.chosenId)?.name ?? null);
     this.status.roundTrip(this.connection.clock.roundTripS);
     this.others.update(world, this.chosenId, this.view.camera.yaw);
-    this.planPanel.update(name, world.plan, world.avatars, world.scene);
+    const followed = this.chosenId !== null && this.others.followedId === this.chosenId;
+    this.planPanel.update(name, world, followed);
     const { avatars, own, doors, plan } = world;
     this.minimap.update(avatars, own, doors, this.view.camera.yaw, plan);
   }

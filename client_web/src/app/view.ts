@@ -26,6 +26,7 @@ export class View implements Picture {
   readonly camera: FollowCamera;
   readonly marks: Marks;
   readonly skeletons = new SkeletonOverlay();
+  readonly drawsFigures = true;
   /** The cost of placing every part of every figure. */
   readonly placing = new Cost();
   private readonly renderer: Renderer;

@@ -21,6 +21,7 @@ const CLIENT_CODES: Record<ClientMessage["type"], number> = {
   mute: ClientCode.MUTE,
   presence: ClientCode.PRESENCE,
   gesture: ClientCode.GESTURE,
+  look: ClientCode.LOOK,
 };
 
 const SERVER_TYPES = new Map<unknown, ServerMessage["type"]>([
@@ -47,6 +48,7 @@ const SERVER_TYPES = new Map<unknown, ServerMessage["type"]>([
 const SINCE = new Map<ClientMessage["type"], number>([
   ["presence", 5],
   ["gesture", 5],
+  ["look", 6],
 ]);
 
 /** Fields that servers before them do not send. */
@@ -62,11 +64,18 @@ export function isSpoken(type: ClientMessage["type"], version: number): boolean 
   return version >= (SINCE.get(type) ?? OLDEST_VERSION);
 }
 
-/** A frame; the version is the one that a hello asks for. */
+/**
+ * A frame; the version is the one that a hello asks for. A server that knows no looks would refuse
+ * a hello with one.
+ */
 export function encodeClient(message: ClientMessage, version = VERSION): Uint8Array<ArrayBuffer> {
+  if (message.type === "hello") {
+    const { type, look, ...fields } = message;
+    const looks = look && isSpoken("look", version) ? { look } : {};
+    return pack([CLIENT_CODES[type], { ...fields, ...looks, version, at: null }]);
+  }
   const { type, ...fields } = message;
-  const body = type === "hello" ? { ...fields, version, at: null } : fields;
-  return pack([CLIENT_CODES[type], body]);
+  return pack([CLIENT_CODES[type], fields]);
 }
 
 /**

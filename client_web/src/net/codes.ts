@@ -2,7 +2,7 @@
 
 import type { GestureName } from "./messages";
 
-export const VERSION = 5;
+export const VERSION = 6;
 /** The oldest version that this client falls back on. */
 export const OLDEST_VERSION = 4;
 
@@ -21,6 +21,7 @@ export const ClientCode = {
   MUTE: 9,
   PRESENCE: 10,
   GESTURE: 11,
+  LOOK: 12,
 } as const;
 
 export const ServerCode = {

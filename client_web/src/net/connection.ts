@@ -6,7 +6,7 @@ import { closing, type Closing } from "./closing";
 import { CloseCode, OLDEST_VERSION, VERSION } from "./codes";
 import { decodeServer, encodeClient, isSpoken } from "./codec";
 import { WireError } from "./errors";
-import type { Admission, Arguments, ClientMessage, ServerMessage, Welcome } from "./messages";
+import type { Admission, Arguments, ClientMessage, Look, ServerMessage, Welcome } from "./messages";
 import { stated } from "./stated";
 
 export type ConnectionState =
@@ -29,14 +29,15 @@ export interface ConnectionEvents {
 }
 
 /**
- * The first message: a name, the token of an avatar to take up again, the operator key, and what
- * lets somebody in.
+ * The first message: a name, the token of an avatar to take up again, the operator key, what lets
+ * somebody in, and how the avatar is to look.
  */
 export interface Greeting {
   name: string;
   resume: string | null;
   operator: string | null;
   admission: Admission | null;
+  look: Look | null;
 }
 
 const OPEN = 1;
@@ -104,6 +105,12 @@ export class Connection {
   doubt(): void {
     this.doubted = true;
     this.ping();
+  }
+
+  /** Look otherwise from now on, also after the connection was lost. */
+  wear(look: Look): void {
+    if (this.greeting) this.greeting = { ...this.greeting, look };
+    this.send({ type: "look", look });
   }
 
   /** False if the message could not be sent: the connection is not live, or the server too old. */

@@ -15,6 +15,7 @@ export type ClientMessage =
       resume: string | null;
       operator: string | null;
       admission: Admission | null;
+      look: Look | null;
     }
   | { type: "move"; seq: number; direction: number; speed: number }
   | { type: "walk_to"; seq: number; x: number; y: number; z: number; strict?: boolean }
@@ -26,7 +27,21 @@ export type ClientMessage =
   | { type: "mute"; id: number; muted: boolean }
   /** The person is away from the screen, or there again. */
   | { type: "presence"; away: boolean }
-  | { type: "gesture"; gesture: number };
+  | { type: "gesture"; gesture: number }
+  | { type: "look"; look: Look };
+
+/**
+ * Clothes, hair, skin and stature of an avatar, each a number; 0 is one that is not chosen, and
+ * follows from the avatar's id.
+ */
+export type Look = readonly [
+  shirt: number,
+  trousers: number,
+  hair: number,
+  hairColour: number,
+  skin: number,
+  statureCm: number,
+];
 
 /** The arguments of a sentence of the server, by names. */
 export type Arguments = Record<string, unknown>;
@@ -158,6 +173,8 @@ export interface EntityInfo {
   stature_m: number;
   /** The place that an actor which explains points at. */
   points_at: Place | null;
+  /** The look that its person has chosen, if any. */
+  look?: Look;
 }
 
 /** One avatar's record in a snapshot, in world coordinates. */
@@ -211,6 +228,18 @@ export interface Plan {
   outcome: number | null;
   /** The person, actor or door for which the trip did not end at the goal. */
   in_the_way: PlanBlocker | null;
+  /** The tour of a guide. */
+  tour?: PlanTour | null;
+}
+
+/** The tour on which a guide leads people. */
+export interface PlanTour {
+  /** Names of places; an empty one for a stop that has none. */
+  stops: string[];
+  /** The place among them of the stop to which it leads, or where it is. */
+  next: number;
+  /** The people who are being led. */
+  followers: number[];
 }
 
 export interface ChatMessage {
@@ -241,8 +270,15 @@ export type ServerMessage =
   | { type: "steps"; tick: number; block: Uint8Array }
   /** An actor in view points at something from now on, or at nothing any more. */
   | { type: "point"; id: number; target: Place | null }
-  /** An avatar in view has another body from now on. */
-  | { type: "reshape"; id: number; radius: number; leg_m: number; stature_m: number }
+  /** An avatar in view has another body or look from now on. */
+  | {
+      type: "reshape";
+      id: number;
+      radius: number;
+      leg_m: number;
+      stature_m: number;
+      look?: Look;
+    }
   /** The person has come into another zone; the welcome of there follows. */
   | { type: "travel"; zone: string; portal: string }
   /** The person of an avatar in view is away from now on, or there again. */

@@ -2,9 +2,11 @@
 
 import { type Camera, Frustum, Group, Matrix4, MeshLambertMaterial, Sphere } from "three";
 import type { Side } from "../world/body";
+import type { Look } from "../net/messages";
 import type { Avatar } from "../world/world";
 import { Instances } from "./instances";
-import { ACTOR, type Clothing, clothingOf, IRON } from "./palette";
+import { type Clothing, clothingOf } from "./clothing";
+import { ACTOR, IRON } from "./palette";
 import { type PartName, PARTS } from "./parts";
 
 /** Corners around a limb, of figures near by and far away. */
@@ -33,7 +35,7 @@ export class Figures {
   private readonly fine = this.partMeshes(FINE_CORNERS);
   private readonly coarse = this.partMeshes(COARSE_CORNERS);
   private readonly all = [...Object.values(this.fine), ...Object.values(this.coarse)];
-  private readonly clothes = new Map<number, Clothing>();
+  private readonly clothes = new Map<number, { look: Look | null; clothing: Clothing }>();
   private readonly view = new Frustum();
   private readonly projection = new Matrix4();
   private readonly room = new Sphere();
@@ -51,7 +53,7 @@ export class Figures {
     for (const avatar of avatars.values()) {
       if (!this.isSeen(avatar)) continue;
       const parts = this.isCoarse(avatar, camera) ? this.coarse : this.fine;
-      placeParts(parts, avatar, this.clothesOf(avatar.id));
+      placeParts(parts, avatar, this.clothesOf(avatar));
     }
     for (const part of this.all) part.finish();
   }
@@ -95,12 +97,22 @@ export class Figures {
     return coarse;
   }
 
-  private clothesOf(id: number): Clothing {
+  private clothesOf({ id, look }: Avatar): Clothing {
     const known = this.clothes.get(id);
-    if (known) return known;
-    const clothes = clothingOf(id);
-    this.clothes.set(id, clothes);
-    return clothes;
+    if (known?.look === look) return known.clothing;
+    const clothing = clothingOf(id, look);
+    this.clothes.set(id, { look, clothing });
+    if (known) for (const part of this.all) part.repaint();
+    return clothing;
+  }
+
+  /** Free the memory of the graphics card. */
+  dispose(): void {
+    for (const { mesh } of this.all) {
+      mesh.geometry.dispose();
+      mesh.dispose();
+    }
+    this.material.dispose();
   }
 
   private partMeshes(corners: number): PartMeshes {
@@ -125,7 +137,8 @@ function placeParts(
   parts.pelvis.put(id, clothes.trousers, body.root, body.pelvis, legM);
   parts.torso.put(id, clothes.shirt, body.lumbar, body.chest, trunkM);
   parts.head.put(id, clothes.skin, body.neck, body.head, trunkM);
-  parts[clothes.hairdo].put(id, clothes.hair, body.neck, body.head, trunkM);
+  const { hairdo } = clothes;
+  if (hairdo) parts[hairdo].put(id, clothes.hair, body.neck, body.head, trunkM);
   if (kind === "actor") parts.hat.put(id, ACTOR, body.neck, body.head, trunkM);
   if (radius > FIGURE_WIDE_M) {
     const { x, y, z } = pose;

@@ -1,11 +1,11 @@
-/** Heads: a face that shows where it looks, hair in three fashions, and the hat of actors. */
+/** Heads: a face that shows where it looks, hair in four fashions, and the hat of actors. */
 
 import { type BufferGeometry, Color, ConeGeometry, SphereGeometry } from "three";
 import { mergeGeometries } from "three/addons/utils/BufferGeometryUtils.js";
 import { type Section, loft, oval, type Oval, skin, WHITE } from "./loft";
 import { painted } from "./shapes";
 
-type HairName = "short" | "long" | "bun";
+type HairName = "short" | "long" | "bun" | "curls";
 
 const EYE = new Color("#1d1a18");
 const BROW = new Color("#5d4a40");
@@ -73,6 +73,15 @@ const FASHIONS: Record<HairName, readonly Curl[]> = {
     { z: 0.08, depth: 0.048, width: 0.1, x: -0.075 },
     { z: 0.0, depth: 0.034, width: 0.086, x: -0.09 },
     { z: -0.03, depth: 0.018, width: 0.06, x: -0.095 },
+  ],
+  curls: [
+    { z: 0.385, depth: 0.03, width: 0.03, x: -0.015 },
+    { z: 0.372, depth: 0.085, width: 0.078, x: -0.015, slope: 0.04 },
+    { z: 0.335, depth: 0.128, width: 0.118, x: -0.018, slope: 0.12 },
+    { z: 0.285, depth: 0.145, width: 0.136, x: -0.022, slope: 0.2 },
+    { z: 0.235, depth: 0.14, width: 0.134, x: -0.03, slope: 0.45 },
+    { z: 0.185, depth: 0.108, width: 0.118, x: -0.052, slope: 0.5 },
+    { z: 0.155, depth: 0.07, width: 0.09, x: -0.062, slope: 0.4 },
   ],
 };
 

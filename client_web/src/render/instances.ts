@@ -131,6 +131,11 @@ export class Instances {
     );
   }
 
+  /** Colour all instances anew: somebody wears something else. */
+  repaint(): void {
+    this.owners.fill(-1);
+  }
+
   /** Index of the next instance, in its owner's colour. */
   private next(owner: number, color: Color): number {
     if (this.count === this.owners.length) this.grow();

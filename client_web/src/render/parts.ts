@@ -20,6 +20,7 @@ export const PARTS = {
   short: (corners: number) => hair("short", corners),
   long: (corners: number) => hair("long", corners),
   bun: (corners: number) => hair("bun", corners),
+  curls: (corners: number) => hair("curls", corners),
   hat,
   upperArm,
   forearm,

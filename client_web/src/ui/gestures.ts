@@ -32,7 +32,7 @@ export class GestureMenu {
       button.addEventListener("click", () => {
         make(number);
       });
-      this.menu.append(button);
+      this.menu.lastElementChild?.before(button);
     }
   }
 

@@ -1,7 +1,7 @@
 /** Words for what an actor does, where it goes, and who holds it. */
 
 import { Outcome, Reason } from "../net/codes";
-import type { Place, Plan, PlanBlocker, ScenePlace } from "../net/messages";
+import type { Place, Plan, PlanBlocker, PlanTour, ScenePlace } from "../net/messages";
 
 /** The name of somebody by the id; null for those whom this page does not know. */
 export type NameOf = (id: number) => string | null;
@@ -9,6 +9,8 @@ export type NameOf = (id: number) => string | null;
 /** A goal lies at a place if it is no further from it than this. */
 const AT_PLACE_M = 3;
 const SAME_FLOOR_M = 1.5;
+/** A path that ends no further from the goal than this leads all the way. */
+const AT_GOAL_M = 0.6;
 
 const BEHAVIOURS: Record<string, string> = {
   go_to: "goes to a place",
@@ -59,10 +61,30 @@ export function reasonOf(plan: Plan, nameOf: NameOf): string {
 export function outlookOf(plan: Plan): string {
   const people = plan.people.length === 1 ? "1 person near" : `${plan.people.length} people near`;
   if (plan.outcome !== null || plan.reason === Reason.ARRIVED) return people;
-  const seconds = plan.path.at(-1)?.[3] ?? 0;
-  return plan.path.length > 1
-    ? `path for ${seconds.toFixed(0)} s, ${people}`
-    : `no path, ${people}`;
+  const end = plan.path.at(-1);
+  if (!end || plan.path.length < 2) return `no path, ${people}`;
+  const [x, y, z, seconds] = end;
+  const { goal } = plan;
+  const leadsThere =
+    goal !== null &&
+    Math.hypot(x - goal[0], y - goal[1]) < AT_GOAL_M &&
+    Math.abs(z - goal[2]) < SAME_FLOOR_M;
+  return `${leadsThere ? "there in" : "path for"} ${seconds.toFixed(0)} s, ${people}`;
+}
+
+/** How many people a guide leads, and whether one is among them. */
+export function followersOf({ followers }: PlanTour, ownId: number): string {
+  const others = followers.filter((id) => id !== ownId).length;
+  const people = others === 1 ? "1 person" : `${others} people`;
+  if (others < followers.length) {
+    return others === 0 ? "You are on this tour." : `You are on this tour, with ${people} more.`;
+  }
+  return others === 0 ? "Nobody is on this tour yet." : `${people} on this tour.`;
+}
+
+/** The name of a stop. */
+export function stopOf({ stops }: PlanTour, stop: number): string {
+  return stops[stop] || `Stop ${stop + 1}`;
 }
 
 function blockerName({ kind, id, door }: PlanBlocker, nameOf: NameOf): string {

@@ -4,6 +4,7 @@ import type {
   Doors,
   EntityInfo,
   EntityRecord,
+  Look,
   GestureName,
   Place,
   Plan,
@@ -27,6 +28,8 @@ export interface Avatar {
   readonly kind: EntityInfo["kind"];
   readonly name: string;
   readonly radius: number;
+  /** The look that its person has chosen; null where it follows from the id. */
+  readonly look: Look | null;
   readonly own: boolean;
   /** The animation of its body. */
   readonly animator: Animator;
@@ -34,6 +37,9 @@ export interface Avatar {
   /** Whether its person is away: nobody looks through its eyes for now. */
   away: boolean;
 }
+
+/** What is told of an avatar that has another body or look. */
+type Reshaped = Pick<EntityInfo, "id" | "radius" | "leg_m" | "stature_m" | "look">;
 
 /** The least time that the own steps are drawn behind their usual arrival. */
 const OWN_LEAST_S = 0.02;
@@ -115,6 +121,7 @@ export class World {
         kind: info.kind,
         name: info.name,
         radius: info.radius,
+        look: info.look ?? null,
         own,
         animator,
         pose,
@@ -175,14 +182,18 @@ export class World {
     if (avatar) avatar.away = away;
   }
 
-  /** An avatar has another body from now on; the steps of its new legs come next. */
-  reshape(id: number, radius: number, legM: number, statureM: number): void {
+  /** An avatar has another body or look from now on; the steps of new legs come next. */
+  reshape({ id, radius, leg_m: legM, stature_m: statureM, look }: Reshaped): void {
     const avatar = this.avatars_.get(id);
     if (!avatar) return;
-    const { target } = avatar.animator.pointing;
-    const animator = new Animator(buildOf(legM, statureM), avatar.pose);
-    animator.pointing.target = target;
-    this.avatars_.set(id, { ...avatar, radius, animator });
+    const build = buildOf(legM, statureM);
+    let { animator } = avatar;
+    if (build.legM !== animator.build.legM || build.trunkM !== animator.build.trunkM) {
+      const { target } = animator.pointing;
+      animator = new Animator(build, avatar.pose);
+      animator.pointing.target = target;
+    }
+    this.avatars_.set(id, { ...avatar, radius, look: look ?? null, animator });
   }
 
   /** Whether each door stands open, by name. */

@@ -34,6 +34,12 @@ describe("encodeClient", () => {
   );
 });
 
+it("says nothing of looks to a server that knows none", () => {
+  const hello = { name: "Ann", resume: null, operator: null, admission: null };
+  const message = { type: "hello", ...hello, look: [1, 2, 3, 4, 5, 171] } as const;
+  expect(decode(encodeClient(message, 5))).toEqual([1, { ...hello, version: 5, at: null }]);
+});
+
 describe("decodeServer", () => {
   it.each(wire.server.map((vector) => [vector.type, vector] as const))(
     "reads %s",

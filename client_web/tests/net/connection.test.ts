@@ -35,7 +35,7 @@ afterEach(() => {
 });
 
 function comeIn(): void {
-  connection.join({ name: "Ann", resume: null, operator: null, admission: null });
+  connection.join({ name: "Ann", resume: null, operator: null, admission: null, look: null });
   newest().accept();
   newest().say(ServerCode.WELCOME, WELCOME);
 }
@@ -57,14 +57,14 @@ describe("joining", () => {
   });
 
   it("sends nothing but the greeting before the welcome", () => {
-    connection.join({ name: "Ann", resume: null, operator: null, admission: null });
+    connection.join({ name: "Ann", resume: null, operator: null, admission: null, look: null });
     newest().accept();
     expect(connection.send({ type: "chat", text: "too early" })).toBe(false);
     expect(newest().received).toHaveLength(1);
   });
 
   it("gives up on a server that does not answer, and tries again", () => {
-    connection.join({ name: "Ann", resume: null, operator: null, admission: null });
+    connection.join({ name: "Ann", resume: null, operator: null, admission: null, look: null });
     newest().accept();
     vi.advanceTimersByTime(12_000);
     expect(phases()).toContain("reconnecting");
@@ -109,29 +109,29 @@ describe("pings", () => {
 
 describe("an older server", () => {
   it("is greeted again in the version before, and sent nothing that it does not know", () => {
-    connection.join({ name: "Ann", resume: null, operator: null, admission: null });
+    connection.join({ name: "Ann", resume: null, operator: null, admission: null, look: null });
     newest().accept();
     newest().end(CloseCode.UNSUPPORTED_VERSION);
     newest().accept();
     expect(sockets.length).toBe(2);
     expect(newest().received[0]?.[1]["version"]).toBe(VERSION - 1);
     newest().say(ServerCode.WELCOME, { ...WELCOME, version: VERSION - 1 });
-    expect(connection.send({ type: "gesture", gesture: 1 })).toBe(false);
+    expect(connection.send({ type: "look", look: [1, 2, 3, 4, 5, 171] })).toBe(false);
     expect(connection.send({ type: "chat", text: "hi" })).toBe(true);
   });
 
-  it("that speaks neither version is left", () => {
-    connection.join({ name: "Ann", resume: null, operator: null, admission: null });
-    for (let k = 0; k < 2; k++) newest().end(CloseCode.UNSUPPORTED_VERSION);
+  it("that speaks none of the versions is left", () => {
+    connection.join({ name: "Ann", resume: null, operator: null, admission: null, look: null });
+    for (let k = 0; k < 3; k++) newest().end(CloseCode.UNSUPPORTED_VERSION);
     vi.advanceTimersByTime(60_000);
-    expect(sockets).toHaveLength(2);
+    expect(sockets).toHaveLength(3);
     expect(connection.state.phase).toBe("refused");
   });
 });
 
 describe("a later version of the server's messages", () => {
   it("is no fault: unknown codes, fields and names are passed over", () => {
-    connection.join({ name: "Ann", resume: null, operator: null, admission: null });
+    connection.join({ name: "Ann", resume: null, operator: null, admission: null, look: null });
     newest().accept();
     newest().say(99, { before: "welcome" });
     newest().say(ServerCode.WELCOME, { ...WELCOME, later: { a: [1] } });

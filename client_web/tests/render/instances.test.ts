@@ -34,6 +34,18 @@ describe("instances of a part", () => {
     expectNear(placed(1, 0, 0), [1, 2, 3.5]);
   });
 
+  it("are coloured anew when their owner wears something else", () => {
+    const colour = (): number | undefined => part.mesh.instanceColor?.getX(0);
+    const at = { x: 0, y: 0, z: 0 };
+    const level = { w: 1, x: 0, y: 0, z: 0 };
+    part.put(1, RED, at, level, 1);
+    expect(colour()).toBe(1);
+    part.repaint();
+    part.begin();
+    part.put(1, BLUE, at, level, 1);
+    expect(colour()).toBe(0);
+  });
+
   it("go on from the end of a limb", () => {
     const limb = { start: new Vector3(), hinge: new Vector3(0, 0, 2), axis: LEFT };
     part.extend(1, RED, { ...limb, end: new Vector3(0, 0, 1) }, 1);

@@ -1,7 +1,7 @@
 import { describe, expect, it } from "vitest";
 import { Outcome, Reason } from "../../src/net/codes";
 import type { Plan } from "../../src/net/messages";
-import { behaviourOf, outlookOf, reasonOf } from "../../src/ui/planwords";
+import { behaviourOf, followersOf, outlookOf, reasonOf, stopOf } from "../../src/ui/planwords";
 
 const PLAN: Plan = {
   type: "plan",
@@ -67,7 +67,23 @@ describe("the behaviour", () => {
 
 describe("the outlook", () => {
   it("tells the path of an actor that walks, and none of one that has arrived", () => {
-    expect(outlookOf(PLAN)).toBe("path for 4 s, 0 people near");
+    expect(outlookOf(PLAN)).toBe("there in 4 s, 0 people near");
+    expect(outlookOf({ ...PLAN, goal: [9, 5, 0] })).toBe("path for 4 s, 0 people near");
     expect(outlookOf({ ...PLAN, reason: Reason.ARRIVED })).toBe("0 people near");
+  });
+});
+
+describe("the tour", () => {
+  const tour = { stops: ["Archive", ""], next: 0, followers: [7, 8] };
+
+  it("has stops with names, or with numbers where there are none", () => {
+    expect([stopOf(tour, 0), stopOf(tour, 1)]).toEqual(["Archive", "Stop 2"]);
+  });
+
+  it("says who is on it", () => {
+    expect(followersOf(tour, 7)).toBe("You are on this tour, with 1 person more.");
+    expect(followersOf(tour, 1)).toBe("2 people on this tour.");
+    expect(followersOf({ ...tour, followers: [7] }, 7)).toBe("You are on this tour.");
+    expect(followersOf({ ...tour, followers: [] }, 7)).toBe("Nobody is on this tour yet.");
   });
 });

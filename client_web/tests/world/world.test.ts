@@ -62,13 +62,24 @@ describe("World", () => {
 
   it("draws another body of the same avatar, which still points where it did", () => {
     world.point(8, [4, 2, 1]);
-    world.reshape(8, 0.4, 0.6, 1.2);
-    world.reshape(99, 0.4, 0.6, 1.2);
+    const body = { radius: 0.4, leg_m: 0.6, stature_m: 1.2 };
+    world.reshape({ id: 8, ...body });
+    world.reshape({ id: 99, ...body });
     const avatar = world.avatars.get(8);
     expect(avatar?.radius).toBe(0.4);
     expect(avatar?.animator.build.legM).toBe(0.6);
     expect(avatar?.animator.pointing.target).toEqual({ x: 4, y: 2, z: 1 });
     expect(world.avatars.size).toBe(2);
+  });
+
+  it("lets somebody walk on who only looks otherwise", () => {
+    const before = world.avatars.get(7)?.animator;
+    const look = [1, 2, 3, 4, 5, 171] as const;
+    world.reshape({ id: 7, radius: 0.25, leg_m: 0.9, stature_m: 1.72, look });
+    expect(world.avatars.get(7)?.look).toEqual(look);
+    expect(world.avatars.get(7)?.animator).toBe(before);
+    world.reshape({ id: 7, radius: 0.25, leg_m: 0.9, stature_m: 1.72 });
+    expect(world.avatars.get(7)?.look).toBeNull();
   });
 
   it("forgets who has left, and their plan", () => {

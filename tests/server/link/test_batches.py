@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 
+from esplanade.protocol.looks import Look
 from esplanade.protocol.messages import Report, WalkTo
 from esplanade.server.link.answers import (
     MOST_BYTES,
@@ -45,6 +46,7 @@ def full_batch() -> Batch:
         [(7, 2, Report(id=8, line=2**40, text="is rude")), (8, 1, Report(id=9, text="?"))],
         [(7, 2, True)],
         [(8, 1, 3)],
+        [(7, 2, Look(1, 2, 3, 4, 5, 171))],
     )
 
 
@@ -57,7 +59,7 @@ def test_a_batch_comes_out_as_it_was() -> None:
 
 
 def test_older_programs_read_batches_without_anything_of_newer_ones() -> None:
-    older = replace(full_batch(), reports=[], presences=[], gestures=[])
+    older = replace(full_batch(), reports=[], presences=[], gestures=[], looks=[])
     assert msgpack.unpackb(encode_batch(older)[24 + older.movements.nbytes :])[9:] == []
     newer = encode_batch(full_batch())
     rest = msgpack.unpackb(newer[24 + older.movements.nbytes :])

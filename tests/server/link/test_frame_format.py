@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 
+from esplanade.protocol.looks import Look
 from esplanade.protocol.snapshot import RECORD
 from esplanade.protocol.steps import new_step_records
 from esplanade.server.link.frame_format import decode_frame, encode_frame
@@ -80,6 +81,21 @@ def test_everything_in_a_frame_is_carried() -> None:
 def test_gestures_and_who_is_away_are_carried() -> None:
     frame = full_frame()
     events = replace(frame.events, gestures={7: 1}, away={8: True, 9: False})
+    decoded = decode_frame(encode_frame(replace(frame, events=events)))
+    assert decoded.events == events
+
+
+def test_looks_are_carried_beside_bodies() -> None:
+    frame = full_frame()
+    (first, *others) = frame.reshaped
+    frame = replace(frame, reshaped=[replace(first, look=Look(1, 2, 3, 4, 5, 171)), *others])
+    assert same(decode_frame(encode_frame(frame)), frame)
+
+
+def test_lines_for_a_few_are_carried_with_those_who_hear_them() -> None:
+    frame = full_frame()
+    (first, *others) = frame.events.chat
+    events = replace(frame.events, chat=[first, *others, replace(first, to=frozenset({8, 9}))])
     decoded = decode_frame(encode_frame(replace(frame, events=events)))
     assert decoded.events == events
 

@@ -2,6 +2,7 @@
 
 from typing import Any, cast
 
+from esplanade.protocol.looks import Look
 from esplanade.server.net.arrivals import Arrival, Arrivals
 from esplanade.server.net.newcomers import MAX_JOINS_PER_TICK
 
@@ -13,6 +14,7 @@ def arrival(number: int, until_s: float = 5.0) -> Arrival:
         name=f"p{number}",
         at=(1.0, 2.0, 0.0),
         zone="hall",
+        look=Look(shirt=number % 12),
         portal="door",
         until_s=until_s,
         release=lambda: None,
@@ -28,6 +30,7 @@ def test_a_crowd_comes_in_over_some_ticks_and_each_of_them_once() -> None:
     assert [join.ticket for join in (*first, *second)] == list(range(MAX_JOINS_PER_TICK + 4))
     assert (len(first), len(second), third) == (MAX_JOINS_PER_TICK, 4, [])
     assert (first[0].id, first[0].at, first[0].anywhere) == (100, (1.0, 2.0, 0.0), True)
+    assert [join.look.shirt for join in first[:3]] == [0, 1, 2]
 
 
 def test_a_place_is_kept_for_a_time_and_given_once() -> None:

@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from esplanade.actors.behaviour_spec import BEHAVIOUR_SPEC
+from esplanade.protocol.looks import Look
 from esplanade.server.world.inputs import (
     ActorsStood,
     Batch,
@@ -24,6 +25,7 @@ from esplanade.server.world.inputs import (
     RemoveActors,
     SendActors,
     SetAway,
+    SetLook,
     SetParameters,
     Stand,
     Steer,
@@ -106,6 +108,7 @@ MAKERS: dict[str, Callable[[Scene], Input]] = {
     "detach": lambda s: Detach(s.person),
     "away": lambda s: SetAway(s.person, s.who % 2 == 0),
     "gesture": lambda s: MakeGesture(s.person, 1 + s.who % 4),
+    "look": lambda s: SetLook(s.person, Look(1 + s.who % 12, stature_cm=150 + s.who % 50)),
     "watch": lambda s: Watch(s.person, s.avatar),
     "ids": lambda s: IdsReserved(10_000 * (s.number + 1), 10_000 * (s.number + 1) + 5),
     "door": lambda s: MoveDoor("gate", is_open=s.who % 2 == 0),

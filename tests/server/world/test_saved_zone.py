@@ -10,6 +10,7 @@ from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 
 from esplanade.actors.behaviour_spec import BEHAVIOUR_SPEC
+from esplanade.protocol.looks import NO_LOOK, Look
 from esplanade.server.checkpoint.format import digest, pack, unpack
 from esplanade.server.world.inputs import (
     ActorCommand,
@@ -21,6 +22,7 @@ from esplanade.server.world.inputs import (
     PlanEvery,
     RemoveActors,
     SendActors,
+    SetLook,
     SetParameters,
     Steer,
 )
@@ -163,6 +165,26 @@ def test_people_stand_where_they_were_and_keep_their_ids() -> None:
     assert second.zone.where(ann) == where
     first.population.close()
     second.population.close()
+
+
+def test_people_look_as_they_did() -> None:
+    first = hall()
+    (ann,) = first.join((3.0, 4.0))
+    look = Look(shirt=3, skin=2, stature_cm=185)
+    first.frame(SetLook(ann, look))
+    before = first.zone.save()
+    second = loaded(before, 100, Returning(ann, "Ann", (0.5, 0.5, 0.0)))
+    (entered,) = [one for one in second.frame().entered if one.id == ann]
+    assert second.zone.state.look(ann) == look
+    assert b"look" in entered.constants[1]
+    stature_m = second.zone.state.statures_m[second.zone.state.slot(ann)]
+    assert stature_m == pytest.approx(1.85)
+    # A checkpoint of a program that knew no looks.
+    del before["people"]["looks"]
+    third = loaded(before, 100, Returning(ann, "Ann", (0.5, 0.5, 0.0)))
+    assert third.zone.state.look(ann) == NO_LOOK
+    for world in (first, second, third):
+        world.population.close()
 
 
 @pytest.fixture(scope="module")

@@ -1,7 +1,7 @@
 import { Color } from "three";
 import { describe, expect, it } from "vitest";
 import { unlikeness } from "../../src/render/likeness";
-import { clothingOf } from "../../src/render/palette";
+import { clothingOf } from "../../src/render/clothing";
 
 describe("clothes", () => {
   it("are never taken for skin", () => {
@@ -10,6 +10,17 @@ describe("clothes", () => {
       expect(unlikeness(shirt, skin), `shirt of ${id}`).toBeGreaterThan(0.1);
       expect(unlikeness(trousers, skin), `trousers of ${id}`).toBeGreaterThan(0.1);
     }
+  });
+
+  it("are those of a look, whatever the id, but for parts that are not chosen", () => {
+    const red = clothingOf(1, [1, 8, 5, 8, 8, 171]);
+    expect(clothingOf(2, [1, 8, 5, 8, 8, 171])).toEqual(red);
+    expect(red.shirt.getHexString()).toBe("c8413b");
+    expect(red.hairdo).toBeNull();
+    const natural = clothingOf(1);
+    expect(clothingOf(1, [0, 0, 0, 0, 0, 171])).toEqual(natural);
+    expect(clothingOf(1, [99, 99, 99, 99, 99, 171]).shirt).toEqual(natural.shirt);
+    expect(clothingOf(1, [1, 0, 0, 0, 0, 0]).skin).toEqual(natural.skin);
   });
 
   it("are of every colour", () => {

@@ -1,0 +1,24 @@
+"""The looks of avatars: what people have chosen, and the bodies that follow from it."""
+
+from esplanade.actors.locomotion.body.traits import traits_of
+from esplanade.protocol.looks import Look
+from esplanade.server.world.state import State
+
+
+class Looks:
+    """Gives avatars looks. A stature that is chosen makes the whole body longer or shorter, so that
+    its steps are those of its legs."""
+
+    def __init__(self, state: State, seed: int) -> None:
+        """`seed` is the world's, by which bodies are drawn."""
+        self._state = state
+        self._seed = seed
+
+    def wear(self, slot: int, look: Look) -> None:
+        """Let the person in that slot look like this from now on."""
+        state = self._state
+        state.looks[slot] = look
+        state.scales[slot] = 1.0
+        if look.stature_cm:
+            own_m = traits_of(self._seed, int(state.ids[slot])).stature_m
+            state.scales[slot] = look.stature_cm / 100.0 / own_m
