@@ -1,10 +1,12 @@
 """A zone that is recorded: its ticks go to a thread that writes, and none of them waits."""
 
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
+import numpy as np
+import numpy.typing as npt
 import structlog
 
 from esplanade.server.file_thread import Ended, FileThread
@@ -18,6 +20,10 @@ from esplanade.server.world.zone import Zone
 MOST_SECONDS: Final = 10
 """Seconds of a zone that may wait for the disk."""
 _NO_BOUND: Final = 2**62
+
+TakenTick = tuple[Frame, Sequence[Input], npt.NDArray[np.int64]]
+TakenSecond = tuple[list[TakenTick], int, int, Mapping[str, Any]]
+"""What a `Tick` and a `Second` are made of, which the thread that writes does."""
 
 log = structlog.get_logger(__name__)
 
@@ -39,11 +45,11 @@ class ZoneRecording:
         self._zone = zone
         self._file = RecordingFile(path, head)
         self._ticks_a_second = max(1, round(1.0 / zone.tick_s))
-        self._ticks: list[Tick] = []
+        self._ticks: list[TakenTick] = []
         self._began = False
         self.written = 0
         """Seconds that were written."""
-        self._thread = FileThread[Second](
+        self._thread = FileThread[TakenSecond](
             path, self._write, ended, most=MOST_SECONDS, most_bytes=_NO_BOUND
         )
 
@@ -58,13 +64,15 @@ class ZoneRecording:
         return self._thread.fault
 
     def take(self, frame: Frame, inputs: Sequence[Input]) -> None:
-        """Take in a tick that has ended; whatever fails here, the world goes on."""
+        """Take in a tick that has ended; whatever fails here, the world goes on.
+
+        The inputs must not be changed afterwards.
+        """
         if self._thread.fault is not None:
             return
         try:
             if self._began:
-                given = [*inputs, ActorsStood()] if frame.actors_stood else list(inputs)
-                self._ticks.append(Tick(frame, given, self._zone.contacts.touching))
+                self._ticks.append((frame, inputs, self._zone.contacts.touching))
             if not self._began or frame.tick % self._ticks_a_second == 0:
                 self._began = True
                 self._hand_over()
@@ -81,15 +89,19 @@ class ZoneRecording:
     def _hand_over(self) -> None:
         ticks, self._ticks = self._ticks, []
         zone = self._zone
-        second = Second(ticks, zone.tick, time.time_ns(), zone.save_exactly())
-        self._thread.put(second, 0, ticks[0].frame.tick if ticks else zone.tick)
+        taken = ticks, zone.tick, time.time_ns(), zone.save_exactly()
+        self._thread.put(taken, 0, ticks[0][0].tick if ticks else zone.tick)
 
-    def _write(self, seconds: Iterator[Second]) -> None:
+    def _write(self, seconds: Iterator[TakenSecond]) -> None:
         try:
-            for second in seconds:
-                self._file.write(second)
+            for ticks, last_tick, at_ns, state in seconds:
+                self._file.write(Second([_tick(*each) for each in ticks], last_tick, at_ns, state))
                 self.written += 1
         except Exception:
             self._file.drop()
             raise
         self._file.close()
+
+
+def _tick(frame: Frame, inputs: Sequence[Input], touching: npt.NDArray[np.int64]) -> Tick:
+    return Tick(frame, [*inputs, ActorsStood()] if frame.actors_stood else inputs, touching)
