@@ -23,7 +23,7 @@ from mcap.reader import make_reader
 from esplanade.actors import Population
 from esplanade.server.building import build_world
 from esplanade.server.loading import load_scene
-from esplanade.server.recording.channels import CHECKPOINTS, INPUTS
+from esplanade.server.recording.container import CHECKPOINTS, INPUTS
 from esplanade.server.recording.head import Built, Head
 from esplanade.server.recording.reader import Recording
 from esplanade.server.recording.zone_recording import ZoneRecording

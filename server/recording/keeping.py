@@ -4,6 +4,7 @@ import asyncio
 import re
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import structlog
@@ -39,6 +40,7 @@ async def recorded(
         return
     try:
         # What writes recordings is in an extra.
+        from esplanade.server.recording.folder import RecordingFolder  # noqa: PLC0415
         from esplanade.server.recording.head import Built, Head  # noqa: PLC0415
         from esplanade.server.recording.zone_recording import ZoneRecording  # noqa: PLC0415
     except ModuleNotFoundError as error:
@@ -50,6 +52,13 @@ async def recorded(
         log.error("the zone is not recorded any more", code=fault.code, why=fault.text)
         bulletin.event("recording", fault.text, code=fault.code, file=path.name)
 
+    def removed(old: Path, why: str) -> None:
+        log.info("an old recording is removed", file=str(old), why=why)
+        text = f"{old.name} is removed: {why}"
+        bulletin.event("recording", text, code="removed", file=old.name)
+
+    most_bytes = None if settings.record_keep_gb is None else settings.record_keep_gb * 1e9
+    folder = RecordingFolder(settings.record, most_bytes, settings.record_keep_days, removed)
     built = Built.of(
         zone,
         name,
@@ -60,7 +69,14 @@ async def recorded(
     )
     try:
         settings.record.mkdir(parents=True, exist_ok=True)
-        recording = ZoneRecording(zone, Head.of(zone, built), path, ended)
+        recording = ZoneRecording(
+            zone,
+            Head.of(zone, built),
+            path,
+            ended,
+            longest_s=max(1, round(settings.record_hours * 3600)),
+            folder=folder,
+        )
     except OSError as error:
         raise LoadingError(f"record: {path}: {error.strerror or error}") from None
     except WritingError as error:

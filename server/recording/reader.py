@@ -16,9 +16,9 @@ from mcap.stream_reader import CRCValidationError, StreamReader, breakup_chunk
 
 from esplanade.server.checkpoint.errors import CheckpointError
 from esplanade.server.checkpoint.format import digest, parts_of
-from esplanade.server.recording.channels import CHECKPOINTS, DIGESTS, INPUTS
+from esplanade.server.recording.container import ABOUT, CHECKPOINTS, DIGESTS, INPUTS
 from esplanade.server.recording.errors import ZoneRecordingError
-from esplanade.server.recording.head import ABOUT, FORMAT, Head, digest_name, read_head
+from esplanade.server.recording.head import FORMAT, Head, digest_name, read_head
 
 _MOST_BYTES: Final = 2**30
 """A record that says it is larger is taken for damage."""

@@ -11,14 +11,18 @@ import structlog
 
 from esplanade.server.file_thread import Ended, FileThread
 from esplanade.server.recording.file import RecordingFile
+from esplanade.server.recording.folder import RecordingFolder
 from esplanade.server.recording.head import Head
 from esplanade.server.recording.seconds import Second, Tick
+from esplanade.server.trajectories.writer import free_path
 from esplanade.server.world.frame import Frame
 from esplanade.server.world.inputs import ActorsStood, Input
 from esplanade.server.world.zone import Zone
 
 MOST_SECONDS: Final = 10
 """Seconds of a zone that may wait for the disk."""
+CLEAR_EVERY_S: Final = 60
+"""Seconds of the world from one look at the folder to the next."""
 _NO_BOUND: Final = 2**62
 
 TakenTick = tuple[Frame, Sequence[Input], npt.NDArray[np.int64]]
@@ -31,11 +35,21 @@ log = structlog.get_logger(__name__)
 class ZoneRecording:
     """Takes each tick of a zone, and leaves a second of them at a time to the thread that writes.
 
-    The file begins with the exact state after the first tick that it takes.
+    The file begins with the exact state after the first tick that it takes, and so does each
+    further one where no file is to have more than `longest_s` seconds.
     """
 
-    def __init__(self, zone: Zone, head: Head, path: Path, ended: Callable[[Ended], None]) -> None:
-        """Make the file.
+    def __init__(
+        self,
+        zone: Zone,
+        head: Head,
+        path: Path,
+        ended: Callable[[Ended], None],
+        *,
+        longest_s: int | None = None,
+        folder: RecordingFolder | None = None,
+    ) -> None:
+        """Make the file; the folder is cleared of old ones now and then.
 
         Raises
         ------
@@ -43,6 +57,10 @@ class ZoneRecording:
             It cannot be written.
         """
         self._zone = zone
+        self._head = head
+        self._path = path
+        self._longest_s = longest_s
+        self._folder = folder
         self._file = RecordingFile(path, head)
         self._ticks_a_second = max(1, round(1.0 / zone.tick_s))
         self._ticks: list[TakenTick] = []
@@ -52,6 +70,16 @@ class ZoneRecording:
         self._thread = FileThread[TakenSecond](
             path, self._write, ended, most=MOST_SECONDS, most_bytes=_NO_BOUND
         )
+
+    @property
+    def path(self) -> Path:
+        """The file that is being written."""
+        return self._file.path
+
+    @property
+    def size(self) -> int:
+        """The bytes of that file."""
+        return self._file.size
 
     @property
     def waiting(self) -> int:
@@ -95,12 +123,24 @@ class ZoneRecording:
     def _write(self, seconds: Iterator[TakenSecond]) -> None:
         try:
             for ticks, last_tick, at_ns, state in seconds:
-                self._file.write(Second([_tick(*each) for each in ticks], last_tick, at_ns, state))
+                second = Second([_tick(*each) for each in ticks], last_tick, at_ns, state)
+                self._file.write(second)
+                if self._longest_s is not None and self._file.seconds > self._longest_s:
+                    self._file = self._next(second)
+                if self._folder is not None and self.written % CLEAR_EVERY_S == 0:
+                    self._folder.clear()
                 self.written += 1
         except Exception:
             self._file.drop()
             raise
         self._file.close()
+
+    def _next(self, second: Second) -> RecordingFile:
+        """Complete the file, and begin another one with the state in which this one ends."""
+        self._file.close()
+        made = RecordingFile(free_path(self._path), self._head, self._file)
+        made.write(second._replace(ticks=[]))
+        return made
 
 
 def _tick(frame: Frame, inputs: Sequence[Input], touching: npt.NDArray[np.int64]) -> Tick:
