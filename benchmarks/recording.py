@@ -35,6 +35,8 @@ from esplanade.server.world.zone import Zone
 TICKS_A_SECOND = 20
 TOLD_EVERY = 4
 """Ticks from one movement of a person to the next."""
+SEEKS = 40
+"""Moments that are gone to."""
 TURNS = 0.05
 """The share of movements that go another way than the one before."""
 
@@ -134,6 +136,7 @@ def measured(actors: int, people: int, seconds: int, path: Path) -> None:
     )
     _bytes(path, seconds)
     _again(path, seconds)
+    _seek(path, seconds)
 
 
 def _bytes(path: Path, seconds: int) -> None:
@@ -178,6 +181,32 @@ def _again(path: Path, seconds: int) -> None:
     print(
         f"  run again            {seconds / took:.1f} times as fast as the clock; the first state "
         f"was loaded in {began - start:.2f} s"
+    )
+
+
+def _seek(path: Path, seconds: int) -> None:
+    took: list[float] = []
+    with Recording(path) as recording:
+        head, first = recording.head, recording.first_tick
+    with ReplayedZone(head) as replayed:
+        for place in np.random.default_rng(3).uniform(0.0, seconds - 1.0, SEEKS):
+            aim = first + round(place * TICKS_A_SECOND)
+            start = time.perf_counter()
+            with Recording(path) as recording:
+                for number, second in enumerate(recording.seconds(aim)):
+                    if number == 0:
+                        assert second.state is not None
+                        replayed.go_to(second.state)
+                    for tick in second.ticks:
+                        if tick.tick <= aim:
+                            replayed.step(tick)
+                    if second.last_tick >= aim:
+                        break
+            took.append(time.perf_counter() - start)
+            assert replayed.zone.tick == aim
+    print(
+        f"  go to any moment     {np.median(took):.2f} s, at most {max(took):.2f} of {SEEKS}, with "
+        f"the file opened each time"
     )
 
 
