@@ -122,6 +122,7 @@ ZONE: Final = Settings(
             "record",
             "record_names",
             "record_chat",
+            "record_later",
             "record_hours",
             "record_keep_days",
             "record_keep_gb",
