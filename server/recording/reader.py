@@ -147,6 +147,7 @@ class Recording:
         """Where the seconds are, in their order; None where the file is cut off."""
         before = self._file.tell()
         try:
+            self._file.seek(0)
             summary = SeekingReader(self._file, record_size_limit=_MOST_BYTES).get_summary()
         except (McapError, struct.error, ValueError, OverflowError, OSError):
             summary = None

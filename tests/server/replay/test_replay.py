@@ -72,6 +72,19 @@ def test_a_part_begins_at_the_nearest_state_and_is_that_of_the_world(
     assert set(rows(part)) <= set(rows(whole))
 
 
+def test_nothing_is_read_between_the_beginning_and_the_nearest_state(
+    recording: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    damaged = tmp_path / "damaged.mcap"
+    data = bytearray(recording.read_bytes())
+    data[chunk_at(recording, 4) + 150] ^= 1
+    damaged.write_bytes(data)
+    assert replay(damaged, "--verify") == 1
+    assert "is damaged" in capsys.readouterr().err
+    assert replay(damaged, "--from", "10.5", "--verify") == 0
+    assert "200 to 250" in capsys.readouterr().out
+
+
 def test_a_part_of_a_file_that_is_cut_off_is_found_without_an_index(
     recording: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
