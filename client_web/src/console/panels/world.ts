@@ -128,13 +128,11 @@ class WorldPanel extends CommandingPanel {
 
   private recording(recording: Recording | null): TemplateResult {
     const on = recording?.state === "on";
-    const none = "The server has no folder for recordings: it needs --record.";
+    const none = "The server has no folder for recordings.";
     return html`<fieldset>
       <legend>Recording</legend>
       <div class="row">
-        <span class="grow" data-recording=${recording?.state ?? "none"}>
-          ${recording ? recorded(recording) : none}
-        </span>
+        <span class="grow">${recording ? recorded(recording) : none}</span>
         ${this.button(on ? "End" : "Record", "record", () => this.record(!on), {
           label: on ? "End the recording" : "Record the world",
           blocked: recording ? null : none,
@@ -181,11 +179,10 @@ function planned(interval: number): string {
 
 function recorded({ state, file, bytes, seconds, fault }: Recording): string {
   if (state === "off") return "The world is not recorded.";
-  const clock = [seconds / 3600, (seconds / 60) % 60, seconds % 60]
-    .map((part) => String(Math.floor(part)).padStart(2, "0"))
-    .join(":");
-  const size = `${(bytes / 1e6).toFixed(1)} MB, ${clock} of the world`;
-  return state === "on" ? `${file}: ${size}` : `${file} ended early, ${size}: ${fault}`;
+  const size = `${(bytes / 1e6).toFixed(1)} MB`;
+  return (
+    fault ?? `${file}: ${size}, ${Math.floor(seconds / 60)} min ${seconds % 60} s of the world`
+  );
 }
 
 function span(seconds: number): string {
