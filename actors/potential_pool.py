@@ -77,6 +77,8 @@ class PotentialPool:
         self._changes = 0
         self._outdated: dict[int, None] = {}
         """Rows that wait to be renewed outside of ticks, the longest out of date first."""
+        self._plain: tuple[list[Any], dict[str, Any]] | None = None
+        """Keys and origins of rows, and the same as plain data, made anew when they are others."""
 
     def take(
         self,
@@ -273,14 +275,18 @@ class PotentialPool:
 
     def save(self) -> dict[str, Any]:
         """The rows as plain data. Their values are not in it, but how these were derived."""
+        derived = [*self._keys, *self._origins]
+        if self._plain is None or self._plain[0] != derived:
+            keys = [None if key is None else plain_key(key) for key in self._keys]
+            origins = [
+                None if each is None or key is None else [plain_key(each[0]), list(each[1])]
+                for key, each in zip(self._keys, self._origins, strict=True)
+            ]
+            self._plain = derived, {"keys": keys, "origins": origins}
         return {
             "derived_outside": self.derived_outside,
             "changes": self._changes,
-            "keys": [None if key is None else plain_key(key) for key in self._keys],
-            "origins": [
-                None if each is None or key is None else [plain_key(each[0]), list(each[1])]
-                for key, each in zip(self._keys, self._origins, strict=True)
-            ],
+            **self._plain[1],
             "users": list(self._users),
             "idle": list(self._idle),
             "spare": list(self._spare),

@@ -18,6 +18,7 @@ _FLAGS: Final = {
     **dict.fromkeys(("no", "false", "off", "0"), False),
 }
 _DIGITS: Final = re.compile(r"[0-9]{1,6}")
+_MOMENT: Final = re.compile(r"(\d{1,4}:)?(\d{1,4}:)?\d{1,9}(\.\d{1,6})?", re.ASCII)
 
 
 class Number:
@@ -85,6 +86,20 @@ class Span:
         if unit is None or not _DIGITS.fullmatch(text[:-1]):
             raise ArgumentTypeError(f"{text!r} is no span of time such as 90s, 15m, 1h or 30d")
         return int(text[:-1]) * unit
+
+
+class Moment:
+    """A moment after a beginning, such as 00:12:30, 12:30 or 750.5; the value is in seconds."""
+
+    metavar = "TIME"
+
+    def __call__(self, text: str) -> float:
+        if not _MOMENT.fullmatch(text):
+            raise ArgumentTypeError(f"{text!r} is no moment such as 00:12:30, 12:30 or 750.5")
+        seconds = 0.0
+        for part in text.split(":"):
+            seconds = 60.0 * seconds + float(part)
+        return seconds
 
 
 class Text:

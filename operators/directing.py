@@ -48,6 +48,10 @@ class Directing(Conversation):
         """Let a world that is paused go on by some ticks."""
         return await self.send({"op": "pace", "step": ticks})
 
+    async def record(self, *, on: bool = True) -> Answer:
+        """Begin to record the world, or end the recording."""
+        return await self.send({"op": "record", "on": on})
+
     async def announce(self, text: str, **whom: Any) -> Answer:
         """Say something to all people, or to those whom `storey_m`, `polygon`, or `near_actor`
         with `radius_m` mean."""

@@ -1,4 +1,4 @@
-"""The options of the part of `esplanade op` about the time of the world."""
+"""The options of the part of `esplanade op` about the time of the world, and its recording."""
 
 from argparse import ArgumentTypeError
 from argparse import _SubParsersAction as SubParsers  # argparse names the type nowhere else
@@ -12,7 +12,7 @@ _WORDS = ("pause", "go", "step")
 
 
 def add_time_parts(commands: "SubParsers[Parser]") -> list[Parser]:
-    """Add the command, and return its parser."""
+    """Add the commands, and return their parsers."""
     pace = add_part(
         commands,
         "time_commands:pace",
@@ -32,7 +32,19 @@ def add_time_parts(commands: "SubParsers[Parser]") -> list[Parser]:
         "--ticks", metavar="N", type=Whole(1, 100), default=1, help="of a step [default: 1]"
     )
     add_note(pace)
-    return [pace]
+    record = add_part(
+        commands,
+        "time_commands:record",
+        "record",
+        "Begin to record the world into the server's folder, end that, or see how it is.",
+        "record start",
+        "record",
+    )
+    record.add_argument(
+        "record", metavar="start|stop", nargs="?", choices=("start", "stop"), help="without it, see"
+    )
+    add_note(record)
+    return [pace, record]
 
 
 def wish(text: str) -> str | float:

@@ -159,7 +159,39 @@ _DATA: Final = {
     "record_chat": Setting(
         "what people say stands in recordings; without it, it is left out", Flag(), default=False
     ),
+    "record_later": Setting(
+        "record only once an operator says so, in place of from the beginning on",
+        Flag(),
+        default=False,
+    ),
+    "record_hours": Setting(
+        "a recording has no more of the world than this; the next file goes on from there",
+        Number(0.01, 8760.0),
+        24.0,
+        "hours",
+    ),
+    "record_keep_days": Setting(
+        "recordings that ended longer ago are removed from the folder; without it, none is",
+        Number(0.01, 3650.0),
+        None,
+        "days",
+    ),
+    "record_keep_gb": Setting(
+        "where the recordings of the folder have more, the oldest are removed; never those that "
+        "are being written",
+        Number(0.001, 1e6),
+        None,
+        "GB",
+    ),
 }
+RECORD_ONLY: Final = (
+    "record_names",
+    "record_chat",
+    "record_later",
+    "record_keep_days",
+    "record_keep_gb",
+)
+"""Settings that belong to `record`."""
 _NETWORK: Final = {
     "host": Setting(
         "address for people: web client and WebSocket; empty: every one, of IPv4 and of IPv6",
@@ -353,7 +385,7 @@ def check(given: Mapping[str, Any]) -> None:
         raise ValueError(f"{name}: it says how a crowd is read, but none is given")
     check_reading(given)
     _check_trajectories(given)
-    for name in ("record_names", "record_chat"):
+    for name in RECORD_ONLY:
         if given.get(name) and not given.get("record"):
             raise ValueError(f"{name}: it belongs to --record, but none is given")
     if bool(given.get("tls_cert")) != bool(given.get("tls_key")):

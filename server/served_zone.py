@@ -29,7 +29,7 @@ from esplanade.server.net.schedule import Schedule
 from esplanade.server.net.search_budget import SearchBudget
 from esplanade.server.net.surroundings import Surroundings
 from esplanade.server.net.ticker import Ticker
-from esplanade.server.recording.keeping import recorded
+from esplanade.server.recording.keeping import recorder_of
 from esplanade.server.recovery import read_recovery
 from esplanade.server.resuming import persistence_of, resume
 from esplanade.server.trajectories.keeping import trajectories_kept
@@ -248,8 +248,8 @@ async def served_zone(
         ticker.trajectories = await stack.enter_async_context(
             trajectories_kept(settings, loaded, world, metrics, live.bulletin)
         )
-        ticker.recording = await stack.enter_async_context(
-            recorded(settings, world, zone.name, metrics, live.bulletin)
+        ticker.recorder = console.state.recorder = await stack.enter_async_context(
+            recorder_of(settings, world, zone.name, metrics, live.bulletin)
         )
         yield ServedZone(world, hub, console, live, metrics, ticker, route_requests, travel)
 

@@ -62,6 +62,10 @@ class ServerSettings(BaseSettings):
     record: Path | None = _field("record")
     record_names: bool = _field("record_names")
     record_chat: bool = _field("record_chat")
+    record_later: bool = _field("record_later")
+    record_hours: float = _field("record_hours")
+    record_keep_days: float | None = _field("record_keep_days")
+    record_keep_gb: float | None = _field("record_keep_gb")
 
     host: str = _field("host")
     port: int = _field("port")

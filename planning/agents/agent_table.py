@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
 from typing import Any, Final, NamedTuple
@@ -189,9 +188,9 @@ class AgentTable:
         return _place_or_none(self.trips.points_at[row])
 
     def save(self) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
-        """Everything that the next tick of these agents depends on, as JSON and arrays.
+        """Everything that the next tick of these agents depends on, as plain data and arrays.
 
-        The arrays are copies. The columns that a zone derives of its own are left out.
+        All of it is copied. The columns that a zone derives of its own are left out.
 
         Raises
         ------
@@ -212,10 +211,10 @@ class AgentTable:
             "format": FORMAT,
             "version": VERSION,
             "slices": slices,
-            "ids": self.ids,
+            "ids": list(self._rows),
             "in_the_way": [[who, *by] for who, by in self.in_the_way.items()],
         }
-        return json.loads(json.dumps(header)), arrays
+        return header, arrays
 
     @classmethod
     def load(cls, header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> AgentTable:

@@ -33,7 +33,7 @@ from esplanade.protocol.commands.people import (
 )
 from esplanade.protocol.commands.presets import ApplyPreset, DeletePreset, SavePreset
 from esplanade.protocol.commands.schedules import CancelSchedule, Mark, ScheduleCommands
-from esplanade.protocol.commands.world import MoveDoor, Pace
+from esplanade.protocol.commands.world import MoveDoor, Pace, Record
 
 __all__ = [
     "COMMAND",
@@ -64,6 +64,7 @@ __all__ = [
     "Pace",
     "Price",
     "QuietZone",
+    "Record",
     "RemoveActors",
     "Revert",
     "SavePreset",
@@ -94,6 +95,7 @@ Command = Annotated[
     | RemoveActors
     | MoveDoor
     | Pace
+    | Record
     | Announce
     | Ban
     | HideLine

@@ -34,3 +34,10 @@ class Pace(BaseCommand):
         if sum(value is not None for value in (self.factor, self.pause, self.step)) != 1:
             raise ValueError("give one of factor, pause and step")
         return self
+
+
+class Record(BaseCommand):
+    """Begin to record the world, or end its recording."""
+
+    op: Literal["record"]
+    on: bool = Field(description="Whether the world is recorded from now on.")

@@ -15,6 +15,7 @@ from esplanade.server.console.inputs import inputs_for
 from esplanade.server.console.moderating import Moderating
 from esplanade.server.console.planned import Planned
 from esplanade.server.console.preparation import Preparation
+from esplanade.server.console.recording import RECORDED, RECORDING, switched
 from esplanade.server.console.records import Records
 from esplanade.server.console.refusals import RefusedError, of_world, unwritable
 from esplanade.server.console.settling import Settling
@@ -77,6 +78,9 @@ class CommandPath:
             return [self._answer(dragged.planned, **dragged.found)]
         planned = self._plans.plan(by, commands)
         facts = together([one.after for one in planned])
+        if RECORDING in facts and len(commands) > 1:
+            text = "a recording begins and ends by a command alone"
+            raise RefusedError.of("not_alone", text)
         inputs, doors = inputs_for(facts, console.state, console.new_number)
         price, bodies = await console.ask(lambda: self._checked(inputs, len(commands)))
         prepare_s = self._preparation.seconds(bodies) if price == "prepared" else None
@@ -88,7 +92,13 @@ class CommandPath:
         numbers = await self._records.intents(by, planned, console.zone.tick)
         await self._moderate(by, planned, numbers)
         began = perf_counter()
-        tick, faults = await self._tick_inputs.carry_out(inputs, doors, facts.get(PACE, {}))
+        if RECORDING in facts and console.state.recorder is not None:
+            tick: int | None = console.zone.tick
+            wanted = facts[RECORDING][RECORDED]
+            faults = await switched(console.state.recorder, on=wanted)
+        else:
+            pace = facts.get(PACE, {})
+            tick, faults = await self._tick_inputs.carry_out(inputs, doors, pace)
         if faults:
             await self._records.outcomes(by, planned, numbers, tick, faults)
             console.settled = numbers[-1]

@@ -35,6 +35,7 @@ from esplanade.server.console.operated_intents import (
 )
 from esplanade.server.console.planned import Planned
 from esplanade.server.console.presets import PRESET
+from esplanade.server.console.recording import RECORDED
 from esplanade.server.console.refusals import RefusedError
 from esplanade.server.console.schedules import SCHEDULE
 from esplanade.server.console.state import (
@@ -194,6 +195,7 @@ _OPS = {
     PRESENT: "add_actors",
     FACTOR: "pace",
     PAUSED: "pace",
+    RECORDED: "record",
     PRESET: "save_preset",
     SCHEDULE: "schedule",
 }

@@ -20,12 +20,14 @@ from esplanade.protocol.commands import (
     MoveDoor,
     NewActor,
     Pace,
+    Record,
     RemoveActors,
     SendActor,
     SetBehaviour,
     SetParameters,
 )
 from esplanade.server.console.groups import GROUP
+from esplanade.server.console.recording import RECORDED, RECORDING
 from esplanade.server.console.refusals import RefusedError
 from esplanade.server.console.state import (
     BEHAVIOUR,
@@ -48,7 +50,7 @@ _FIELDS: Final[Mapping[str, TypeAdapter[Any]]] = {
 }
 
 
-def intended(  # noqa: PLR0911 (one for each command)
+def intended(  # noqa: C901, PLR0911, PLR0912 (one for each command)
     command: Command, state: OperatedState, pending: Facts
 ) -> Facts:
     """Return the facts that a command wants; `pending` are those of commands before it.
@@ -89,8 +91,17 @@ def intended(  # noqa: PLR0911 (one for each command)
             return {f"door:{command.door}": {OPEN: command.open}}
         case Pace():
             return _pace(command, state, pending)
+        case Record():
+            return _record(command, state)
         case _:
             raise AssertionError(f"{command.op} wants nothing of the zone itself")
+
+
+def _record(command: Record, state: OperatedState) -> Facts:
+    if state.recorder is None:
+        text = "the server has no folder for recordings: start it with --record DIR"
+        raise RefusedError.of("no_recordings", text, "on")
+    return {RECORDING: {RECORDED: command.on}}
 
 
 def _pace(command: Pace, state: OperatedState, pending: Facts) -> Facts:

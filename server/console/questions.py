@@ -25,6 +25,7 @@ def world(console: Console) -> dict[str, Any]:
     """The zone at this moment."""
     zone = console.zone
     people, actors = zone.count()
+    recorder = console.state.recorder
     return {
         "zone": ZONE,
         "scene": zone.scene.name,
@@ -39,6 +40,7 @@ def world(console: Console) -> dict[str, Any]:
         "places": {place.name: [*place.position, place.z_m] for place in zone.scene.places},
         "revision": console.changes.revision,
         "pace": told(console.pace),
+        "recording": None if recorder is None else recorder.told(),
         "planning_interval_ticks": zone.planning_interval,
     }
 

@@ -8,6 +8,7 @@ from esplanade.actors.overrides import DEFAULTS, WORLD, Values
 from esplanade.protocol.commands import Facts
 from esplanade.server.console.groups import GROUP, Groups, moved
 from esplanade.server.console.presets import Presets
+from esplanade.server.console.recording import RECORDING, Recorder
 from esplanade.server.console.schedules import Schedules
 from esplanade.server.world.pace import Pace
 from esplanade.server.world.zone import Zone
@@ -41,6 +42,8 @@ class OperatedState:
         self.presets = presets or Presets()
         self.schedules = Schedules()
         self.held: set[str] = set()
+        self.recorder: Recorder | None = None
+        """Where recordings go; None where there is no folder for them."""
         self.elsewhere: dict[str, Callable[[str, str], Any]] = {}
         """Tells the fields of subjects that are kept elsewhere, by the kind of subject."""
         self._doors: dict[str, bool] = {}
@@ -51,6 +54,8 @@ class OperatedState:
         kind, _, name = subject.partition(":")
         if kind == PACE:
             return getattr(self.pace.state, field, None)
+        if kind == RECORDING:
+            return self.recorder is not None and self.recorder.is_on
         if kind in self.elsewhere:
             return self.elsewhere[kind](subject, field)
         match kind, field:

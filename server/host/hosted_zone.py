@@ -51,7 +51,7 @@ from esplanade.server.net.schedule import Schedule
 from esplanade.server.net.search_budget import SearchBudget
 from esplanade.server.net.waiting_lines import WaitingLines
 from esplanade.server.net.walk_outs import WalkOuts
-from esplanade.server.recording.keeping import recorded
+from esplanade.server.recording.keeping import recorder_of
 from esplanade.server.store.store import Store, StoreError
 from esplanade.server.watching import watch_routes, watch_world
 from esplanade.server.world.pace import PaceState
@@ -274,8 +274,8 @@ async def hosted_zone(
             moderation,
             live.tap,
         )
-        ticker.recording = await stack.enter_async_context(
-            recorded(settings, world, zone.name, metrics, bulletin)
+        ticker.recorder = console.state.recorder = await stack.enter_async_context(
+            recorder_of(settings, world, zone.name, metrics, bulletin)
         )
         sender = FrameSender(broker, subjects, zone.name, ticker.whole)
         digest = digest_of(zone.loaded.scene)

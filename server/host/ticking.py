@@ -32,7 +32,7 @@ ALIVE_S: Final = 0.4
 """A world that stands is told of so often, so that gateways know that its host is there."""
 
 if TYPE_CHECKING:
-    from esplanade.server.recording.zone_recording import ZoneRecording
+    from esplanade.server.recording.keeping import ZoneRecorder
 
 log = structlog.get_logger(__name__)
 
@@ -69,7 +69,7 @@ class HostTicker:
         self._console = console
         self._moderation = moderation
         self._tap = tap
-        self.recording: ZoneRecording | None = None
+        self.recorder: ZoneRecorder | None = None
         """Where the ticks go from which a replay runs them again."""
         self._known = WholeState()
         self._known.begin_with_doors(world.doors.states())
@@ -156,8 +156,8 @@ class HostTicker:
         seconds = perf_counter() - start
         self._metrics.tick_took(seconds, self._world.times.seconds)
         self._tap.take(frame, seconds, self._schedule.late_ticks)
-        if self.recording is not None:
-            self.recording.take(frame, inputs)
+        if self.recorder is not None:
+            self.recorder.take(frame, inputs)
 
     async def _send(self, sender: FrameSender, frame: Frame) -> None:
         key = FrameKey(self._renewal.tenure.claim.epoch, frame.tick)

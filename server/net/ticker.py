@@ -25,7 +25,7 @@ from esplanade.server.world.inputs import Input, Still
 from esplanade.server.world.zone import Zone
 
 if TYPE_CHECKING:
-    from esplanade.server.recording.zone_recording import ZoneRecording
+    from esplanade.server.recording.keeping import ZoneRecorder
 
 log = structlog.get_logger(__name__)
 
@@ -60,7 +60,7 @@ class Ticker:
         """Where the ticks go that operators see."""
         self.trajectories: WorldTrajectories | None = None
         """Where the ticks go that are written to a file."""
-        self.recording: ZoneRecording | None = None
+        self.recorder: ZoneRecorder | None = None
         """Where the ticks go from which a replay runs them again."""
         self._stopping = asyncio.Event()
         self._persistence: Persistence | None = None
@@ -182,9 +182,9 @@ class Ticker:
         if self.trajectories is not None:
             for frame in frames:
                 self.trajectories.take(frame, inputs)
-        if self.recording is not None:
+        if self.recorder is not None:
             for frame in frames:
-                self.recording.take(frame, inputs)
+                self.recorder.take(frame, inputs)
         if self._persistence is not None:
             self._persistence.between_ticks(loop.time())
         if self._long_lived is not None:

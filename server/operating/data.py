@@ -4,6 +4,7 @@ import asyncio
 import sys
 from argparse import Namespace
 from collections.abc import Awaitable, Callable, Mapping
+from pathlib import Path
 from typing import TypeVar
 
 from sqlalchemy.exc import SQLAlchemyError
@@ -15,6 +16,7 @@ from esplanade.server.audit.log import AuditLog
 from esplanade.server.audit.verifying import verify
 from esplanade.server.operating.forgetting import forget as forget_person
 from esplanade.server.operating.opening import WRITER, in_store, located
+from esplanade.server.recording.errors import ZoneRecordingError
 from esplanade.server.store.backup import read_backup, write_backup
 from esplanade.server.store.files import empty_journal, remove_file
 from esplanade.server.store.location import Location
@@ -88,12 +90,27 @@ def forget(options: Namespace) -> int:
         return counts, await asyncio.to_thread(empty_journal, store.engine, store.location)
 
     counts, is_gone = in_store(options, work)
+    if options.recordings is not None:
+        counts["recordings"] = _forget_in_recordings(options.recordings, options.person)
     if not any(counts.values()):
         raise CommandError(f"nothing is known of {options.person!r}")
     print(f"forgotten: {_told(counts)}")
     if not is_gone:
         print("a server has the file open: its journal holds the old rows until it is next emptied")
     return exit_codes.OK
+
+
+def _forget_in_recordings(folder: Path, person: str) -> int:
+    try:
+        # What reads recordings is in an extra.
+        from esplanade.server.recording.forgetting import forget_in_recordings  # noqa: PLC0415
+    except ModuleNotFoundError as error:
+        package = (error.name or "").partition(".")[0]
+        raise CommandError(f"recordings need {package}: install esplanade[record]") from None
+    try:
+        return forget_in_recordings(folder, person)
+    except ZoneRecordingError as error:
+        raise CommandError(f"recordings still know {person!r}: {error}") from None
 
 
 def _with_any_tables(location: Location, work: Callable[[SqlStore], Awaitable[Result]]) -> Result:

@@ -45,6 +45,12 @@ def parser() -> Parser:
         "the account\nof this name with what it did. The audit's chain still holds."
     )  # fmt: skip
     forget.add_argument("person", metavar="PERSON", type=Text(), help="the name")
+    forget.add_argument(
+        "--recordings",
+        metavar="DIR",
+        type=InputFile(folders=True),
+        help="folder of recordings, in which the name and the chat of the person are forgotten too",
+    )
     parts = [backup, restore, upgrade, forget]
     for part in parts:
         add_place(part)

@@ -1,15 +1,9 @@
-"""The channels of a recording and their schemas, and the bytes of their messages."""
+"""The channels of a recording and their schemas."""
 
-import json
 from typing import Any, Final, NamedTuple
 
+from esplanade.server.recording.container import CHECKPOINTS, COMMANDS, DIGESTS, EVENTS, INPUTS
 from esplanade.server.world.recorded_inputs import schema as inputs_schema
-
-INPUTS: Final = "inputs"
-DIGESTS: Final = "digests"
-CHECKPOINTS: Final = "checkpoints"
-COMMANDS: Final = "commands"
-EVENTS: Final = "events"
 
 
 class Channel(NamedTuple):
@@ -95,8 +89,3 @@ def channels() -> dict[str, Channel]:
             },
         ),
     }
-
-
-def to_json(message: Any) -> bytes:
-    """A message as JSON; numbers come back as they are, bit for bit."""
-    return json.dumps(message, separators=(",", ":"), ensure_ascii=False).encode()

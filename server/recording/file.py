@@ -3,24 +3,27 @@
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from pathlib import Path
-from typing import Any, Final
-
-from mcap.writer import CompressionType, Writer
+from typing import Any, Final, Self
 
 from esplanade.recordings.writing import WritingError
 from esplanade.server.checkpoint.format import digest, packed
-from esplanade.server.recording.channels import (
+from esplanade.server.recording.channels import channels
+from esplanade.server.recording.container import (
+    ABOUT,
     CHECKPOINTS,
     COMMANDS,
     DIGESTS,
     EVENTS,
     INPUTS,
-    channels,
+    WRITTEN_BY,
+    begun_writer,
+    end_chunk,
     to_json,
 )
 from esplanade.server.recording.digests import digests
+from esplanade.server.recording.folder import mark_as_written
 from esplanade.server.recording.happened import Happened
-from esplanade.server.recording.head import ABOUT, Head, digest_name
+from esplanade.server.recording.head import Head, digest_name
 from esplanade.server.recording.hiding import inputs_of, state_of
 from esplanade.server.recording.seconds import Second, Tick, check_of
 from esplanade.server.world.inputs import ActorCommand, Batch, Input, OneActorCommand
@@ -29,30 +32,32 @@ from esplanade.server.world.recorded_inputs import recorded
 CHECKPOINT_EVERY_S: Final = 10
 MOST_COMMANDS: Final = 4096
 """Commands whose outcome is not known yet; of more, the oldest is forgotten."""
-_CHUNK_BYTES: Final = 2**40
-"""Chunks end by `_end_chunk` and not by their size."""
 
 
 class RecordingFile:
     """A file that seconds are written to, in one thread."""
 
-    def __init__(self, path: Path, head: Head) -> None:
-        """Make the file, and write its head.
+    def __init__(self, path: Path, head: Head, before: Self | None = None) -> None:
+        """Make the file, and write its head; it may go on where another one ended before.
 
         Raises
         ------
         WritingError
             It cannot be written, or is there already.
         """
-        self._path = path
+        self.path = path
         self._built = head.built
-        self._happened = Happened()
-        self._commands: dict[int, ActorCommand] = {}
-        self._seconds = 0
+        self.happened: Happened = Happened() if before is None else before.happened
+        self.commands: dict[int, ActorCommand] = {} if before is None else before.commands
+        """Those whose outcome is not known yet."""
+        self.seconds = 0
+        """Seconds that were written."""
+        self.size = 0
+        """Bytes that were written."""
         try:
             self._file = path.open("xb")
-            self._writer = Writer(self._file, _CHUNK_BYTES, CompressionType.ZSTD)
-            self._writer.start(profile="esplanade", library=head.about["written by"])
+            mark_as_written(self._file)
+            self._writer = begun_writer(self._file, head.about[WRITTEN_BY])
             files = head.attachments()
             sums = {digest_name(name): digest(data) for name, data in files.items()}
             self._writer.add_metadata(ABOUT, {**head.about, **sums})
@@ -96,13 +101,14 @@ class RecordingFile:
             self._tell(tick, second)
         parts = digests(second.state)
         self._add(DIGESTS, second, to_json({"tick": second.last_tick, "parts": parts}))
-        if self._seconds % CHECKPOINT_EVERY_S == 0:
+        if self.seconds % CHECKPOINT_EVERY_S == 0:
             state = state_of(second.state, names=self._built.names)
             self._add(CHECKPOINTS, second, packed(state))
-        self._seconds += 1
+        self.seconds += 1
         try:
-            _end_chunk(self._writer)
+            end_chunk(self._writer)
             self._file.flush()
+            self.size = self._file.tell()
         except OSError as error:
             raise self._fault(error) from None
 
@@ -128,11 +134,11 @@ class RecordingFile:
             self._file.close()
 
     def _tell(self, tick: Tick, second: Second) -> None:
-        for event in self._happened.events(tick):
+        for event in self.happened.events(tick):
             self._add(EVENTS, second, to_json(event))
         self._remember(tick.inputs)
         for outcome in tick.frame.outcomes:
-            command = self._commands.pop(outcome.command, None)
+            command = self.commands.pop(outcome.command, None)
             fault: Mapping[str, Any] | None = None
             if outcome.fault is not None:
                 fault = {"code": outcome.fault.code.value, "text": outcome.fault.text}
@@ -147,18 +153,13 @@ class RecordingFile:
     def _remember(self, inputs: Iterable[Input]) -> None:
         for item in inputs:
             if isinstance(item, OneActorCommand | Batch):
-                self._commands[item.command] = item
-        while len(self._commands) > MOST_COMMANDS:
-            self._commands.pop(next(iter(self._commands)))
+                self.commands[item.command] = item
+        while len(self.commands) > MOST_COMMANDS:
+            self.commands.pop(next(iter(self.commands)))
 
     def _add(self, topic: str, second: Second, data: bytes) -> None:
         world_ns = round(second.last_tick * self._built.tick_s * 1e9)
         self._writer.add_message(self._topics[topic], world_ns, data, second.at_ns)
 
     def _fault(self, error: OSError) -> WritingError:
-        return WritingError(f"{self._path}: {error.strerror or error}")
-
-
-def _end_chunk(writer: Writer) -> None:
-    """End the chunk that is being filled, which the library does by the size of chunks alone."""
-    writer._Writer__finalize_chunk()  # type: ignore[attr-defined]  # noqa: SLF001
+        return WritingError(f"{self.path}: {error.strerror or error}")

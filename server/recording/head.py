@@ -13,19 +13,16 @@ import numba
 
 from esplanade.commandline.provenance import software
 from esplanade.planning import Scene
+from esplanade.server.recording.container import SCENE, SETTINGS, WRITTEN_BY
 from esplanade.server.recording.errors import ZoneRecordingError
 from esplanade.server.world.rules import Rules
 from esplanade.server.world.zone import Zone
 
 FORMAT: Final = "esplanade recording 1"
-ABOUT: Final = "esplanade recording"
-"""The name of the record of metadata that says what made a file."""
-SCENE: Final = "scene.json"
-SETTINGS: Final = "settings.json"
 MESH: Final = "mesh"
 """The name of an attached mesh begins so; the suffix of its file follows."""
 _LIBRARIES: Final = ("numpy", "numba", "llvmlite", "scipy", "msgpack", "pydantic")
-PROGRAM: Final = ("format", "written by", "sources sha256", "python", *_LIBRARIES)
+PROGRAM: Final = ("format", WRITTEN_BY, "sources sha256", "python", *_LIBRARIES)
 """Where any of these differs, nothing says that the same inputs make the same world."""
 MACHINE: Final = ("processor", "processor features")
 """Compiled kernels may round otherwise on another processor."""

@@ -3,7 +3,8 @@
 import json
 import struct
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from types import TracebackType
@@ -11,14 +12,24 @@ from typing import IO, Any, Final, NamedTuple, Self
 
 import zstandard
 from mcap.exceptions import EndOfFile, McapError
-from mcap.records import Attachment, Channel, Chunk, DataEnd, McapRecord, Message, Metadata
+from mcap.reader import SeekingReader
+from mcap.records import (
+    Attachment,
+    Channel,
+    Chunk,
+    ChunkIndex,
+    DataEnd,
+    McapRecord,
+    Message,
+    Metadata,
+)
 from mcap.stream_reader import CRCValidationError, StreamReader, breakup_chunk
 
 from esplanade.server.checkpoint.errors import CheckpointError
 from esplanade.server.checkpoint.format import digest, parts_of
-from esplanade.server.recording.channels import CHECKPOINTS, DIGESTS, INPUTS
+from esplanade.server.recording.container import ABOUT, CHECKPOINTS, DIGESTS, INPUTS
 from esplanade.server.recording.errors import ZoneRecordingError
-from esplanade.server.recording.head import ABOUT, FORMAT, Head, digest_name, read_head
+from esplanade.server.recording.head import FORMAT, Head, digest_name, read_head
 
 _MOST_BYTES: Final = 2**30
 """A record that says it is larger is taken for damage."""
@@ -44,7 +55,7 @@ class RecordedSecond:
 
 
 class Recording:
-    """A file that is open; `seconds` reads it once from its beginning."""
+    """A file that is open; `seconds` reads it once, from its beginning or a state in it."""
 
     def __init__(self, path: Path) -> None:
         """Open the file and read its head.
@@ -65,9 +76,8 @@ class Recording:
         self._size = path.stat().st_size
         self._topics: dict[int, str] = {}
         self._records = self._read()
-        self._first: Chunk | None = None
         try:
-            self.head: Head = self._read_head()
+            self.head, self._first = self._read_head()
         except ZoneRecordingError:
             self._close()
             raise
@@ -88,15 +98,88 @@ class Recording:
         """The share of the file that was read so far."""
         return self._file.tell() / max(1, self._size)
 
-    def seconds(self) -> Iterator[RecordedSecond]:
-        """All seconds in their order, the first of which has a state.
+    @cached_property
+    def first_tick(self) -> int:
+        """The tick after which the recording begins.
+
+        Raises
+        ------
+        ZoneRecordingError
+            That second is damaged.
+        """
+        return self._second(self._first).last_tick
+
+    @cached_property
+    def last_tick(self) -> int | None:
+        """The last tick, by the index of the file; None where that is cut off."""
+        return None if self._index is None else self._tick_at(self._index[-1].message_end_time)
+
+    def seconds(self, from_tick: int = 0) -> Iterator[RecordedSecond]:
+        """All seconds in their order, from the latest state that is not after a tick.
+
+        The first one has that state, and no ticks: they are what led to it. The index of the file
+        says where it is; a file that is cut off has none, and is read from its beginning.
 
         Raises
         ------
         ZoneRecordingError
             The file is damaged; the message says where.
         """
-        chunk = self._first
+        waiting: RecordedSecond | None = None
+        later: list[RecordedSecond] = []
+        for second in self._all(self._nearest(from_tick)):
+            if second.last_tick <= from_tick and second.state is not None:
+                waiting, later = second, []
+            elif waiting is not None and second.last_tick <= from_tick:
+                later.append(second)
+            else:
+                if waiting is not None:
+                    yield replace(waiting, ticks=[])
+                    yield from later
+                    waiting, later = None, []
+                yield second
+        if waiting is not None:
+            yield replace(waiting, ticks=[])
+            yield from later
+
+    @cached_property
+    def _index(self) -> list[ChunkIndex] | None:
+        """Where the seconds are, in their order; None where the file is cut off."""
+        before = self._file.tell()
+        try:
+            self._file.seek(0)
+            summary = SeekingReader(self._file, record_size_limit=_MOST_BYTES).get_summary()
+        except (McapError, struct.error, ValueError, OverflowError, OSError):
+            summary = None
+        finally:
+            self._file.seek(before)
+        found = [] if summary is None else summary.chunk_indexes
+        return sorted(found, key=lambda each: each.chunk_start_offset) or None
+
+    def _tick_at(self, world_ns: int) -> int:
+        return round(world_ns / 1e9 / self.head.built.tick_s)
+
+    def _nearest(self, tick: int) -> Chunk | None:
+        """The second with the latest state that is not after a tick, with all that follow it."""
+        if tick <= self.first_tick or self._index is None:
+            return self._first
+        states = {number for number, topic in self._topics.items() if topic == CHECKPOINTS}
+        found = [
+            each.chunk_start_offset
+            for each in self._index
+            if states & each.message_index_offsets.keys()
+            and self._tick_at(each.message_end_time) <= tick
+        ]
+        if len(found) <= 1:
+            return self._first
+        self._file.seek(found[-1])
+        self._records = self._read(skip_magic=True)
+        return self._next()
+
+    def _next(self) -> Chunk | None:
+        return next((each for each in self._records if isinstance(each, Chunk)), None)
+
+    def _all(self, chunk: Chunk | None) -> Iterator[RecordedSecond]:
         last: int | None = None
         while chunk is not None:
             second = self._second(chunk)
@@ -106,15 +189,17 @@ class Recording:
                 raise self._fault("the state that it begins with is missing")
             last = second.last_tick
             yield second
-            chunk = next((each for each in self._records if isinstance(each, Chunk)), None)
+            chunk = self._next()
 
     def _close(self) -> None:
         self._file.close()
         self._folder.cleanup()
 
-    def _read(self) -> Iterator[McapRecord]:
+    def _read(self, *, skip_magic: bool = False) -> Iterator[McapRecord]:
         """The records of the file up to the end of its data, or to where it is cut off."""
-        reader = StreamReader(self._file, emit_chunks=True, record_size_limit=_MOST_BYTES)
+        reader = StreamReader(
+            self._file, skip_magic, emit_chunks=True, record_size_limit=_MOST_BYTES
+        )
         records = iter(reader.records)
         while True:
             try:
@@ -128,7 +213,9 @@ class Recording:
                 return
             yield record
 
-    def _read_head(self) -> Head:
+    def _read_head(self) -> tuple[Head, Chunk]:
+        """The head of the recording, and its first second."""
+        first: Chunk | None = None
         about: Mapping[str, str] | None = None
         files: dict[str, bytes] = {}
         for record in self._records:
@@ -139,7 +226,7 @@ class Recording:
                 if about is not None and about.get(digest_name(record.name)) != digest(record.data):
                     raise self._fault(f"the attachment {record.name} is damaged")
             elif isinstance(record, Chunk):
-                self._first = record
+                first = record
                 break
         if about is None:
             raise ZoneRecordingError(f"{self.path}: this is no recording of Esplanade")
@@ -148,10 +235,10 @@ class Recording:
                 f"{self.path}: it is of the format {about.get('format')!r}, and this program reads "
                 f"{FORMAT!r}"
             )
-        if self._first is None:
+        if first is None:
             raise ZoneRecordingError(f"{self.path}: there is nothing in it but its head")
         try:
-            return read_head(about, files, Path(self._folder.name))
+            return read_head(about, files, Path(self._folder.name)), first
         except ZoneRecordingError as error:
             raise ZoneRecordingError(f"{self.path}: {error}") from None
 

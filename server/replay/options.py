@@ -5,7 +5,7 @@ from typing import Final
 
 from esplanade.commandline.errors import UsageError
 from esplanade.commandline.parser import Parser
-from esplanade.commandline.readers import InputFile, Number, OutputFile
+from esplanade.commandline.readers import InputFile, Moment, Number, OutputFile
 from esplanade.commandline.trajectory_files import check_suffix
 
 EPILOG: Final = """\
@@ -13,6 +13,7 @@ examples:
   esplanade serve --record kept              writes kept/gallery.mcap as the world runs
   esplanade replay kept/gallery.mcap --verify
   esplanade replay kept/gallery.mcap --trajectories walks.csv --hz 10
+  esplanade replay kept/gallery.mcap --from 00:12:30 --to 00:13:00 --trajectories walks.csv
   esplanade replay kept/gallery.mcap --info
 
 a recording has all inputs of a zone, so that it runs again bit for bit: with the same program, and
@@ -36,6 +37,17 @@ def parser() -> Parser:
         epilog=EPILOG,
     )
     made.add_argument("file", metavar="FILE", type=InputFile(), help="recording, an .mcap file")
+    made.add_argument(
+        "--from",
+        dest="from_s",
+        metavar="TIME",
+        type=Moment(),
+        help="begin here, after the beginning of the recording, such as 00:12:30 or 750: what lies "
+        "before the state that is nearest is not run",
+    )
+    made.add_argument(
+        "--to", dest="to_s", metavar="TIME", type=Moment(), help="end here [default: at its end]"
+    )
     made.add_argument(
         "--verify",
         action="store_true",
@@ -74,6 +86,10 @@ def check(options: Namespace) -> None:
     """
     if options.hz is not None and options.trajectories is None:
         raise UsageError("--hz: it belongs to --trajectories, but none is given")
+    if options.to_s is not None and options.to_s <= (options.from_s or 0.0):
+        raise UsageError("--to: it must be after --from, or after the beginning")
+    if options.info and (options.from_s is not None or options.to_s is not None):
+        raise UsageError("--info: it tells of the whole recording; leave out --from and --to")
     if options.info and (options.verify or options.trajectories):
         raise UsageError("--info: it runs nothing, so that nothing can be verified or written")
     if options.trajectories is not None:

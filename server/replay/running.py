@@ -12,19 +12,12 @@ from esplanade.commandline import exit_codes
 from esplanade.commandline.errors import UsageError
 from esplanade.commandline.output import console
 from esplanade.commandline.progress import progress
-from esplanade.commandline.provenance import digest_if_there, software
-from esplanade.recordings.samples import Head as TrajectoryHead
-from esplanade.recordings.samples import Note
-from esplanade.recordings.streams import Stream, open_stream
+from esplanade.server.recording.errors import ZoneRecordingError
 from esplanade.server.recording.head import MACHINE, PROGRAM, differing
 from esplanade.server.recording.reader import Recording
 from esplanade.server.replay.replayed_zone import ReplayedZone
 from esplanade.server.replay.verifying import Verifier
-from esplanade.server.trajectories.blocks import write_block
-from esplanade.server.trajectories.rates import ticks_between
-from esplanade.server.trajectories.recorder import Recorder
-from esplanade.server.trajectories.walkable import walkable_wkt
-from esplanade.server.world.zone import Zone
+from esplanade.server.replay.written_trajectories import WrittenTrajectories
 
 
 @dataclass
@@ -75,36 +68,55 @@ def replay(recording: Recording, options: Namespace) -> int:
         verifier = Verifier(replayed.zone) if options.verify else None
         shown = stack.enter_context(progress(share=True, time_left=True))
         task = shown.add_task("verifying" if verifier else "replaying", total=1.0)
-        recorder: Recorder | None = None
-        stream: Stream | None = None
+        first, last = _bounds(recording, options)
+        written = None
+        if options.trajectories is not None:
+            written = stack.enter_context(WrittenTrajectories(recording, replayed, options))
         began_s = time.perf_counter()
-        for second in recording.seconds():
+        for second in recording.seconds(first):
             if second.state is not None and not done.first_tick:
                 replayed.go_to(second.state)
-                done.first_tick = second.last_tick
-                if options.trajectories is not None:
-                    recorder = Recorder(replayed.zone, options.hz)
-                    head = _head(recording, replayed.zone, options)
-                    stream = open_stream(options.trajectories, head)
-                    stack.callback(stream.close)
+                done.first_tick = done.last_tick = second.last_tick
                 began_s = time.perf_counter()
             for tick in second.ticks:
+                if tick.tick > last:
+                    break
                 frame = replayed.step(tick)
+                done.last_tick = tick.tick
                 if verifier is not None:
                     verifier.tick(tick, frame)
-                block = None if recorder is None else recorder.take(frame, replayed.inputs)
-                if stream is not None and block is not None:
-                    write_block(stream, block)
-            done.last_tick = second.last_tick
+                if written is not None and tick.tick > first:
+                    written.take(frame)
+            if second.last_tick > last:
+                break
             if verifier is not None:
                 verifier.second(second)
                 if verifier.is_done:
                     break
             shown.update(task, completed=recording.share_read)
         done.took_s = time.perf_counter() - began_s
-        if recorder is not None and stream is not None:
-            stream.note(Note(recorder.last_frame, replayed.zone.tick, "end", "{}"))
+        if options.from_s is not None and done.last_tick <= first:
+            raise ZoneRecordingError(_too_late(recording, options, done.last_tick))
     return _tell(recording, options, done, verifier)
+
+
+def _bounds(recording: Recording, options: Namespace) -> tuple[int, int]:
+    """The ticks after which the part of a recording begins, and with which it ends."""
+    tick_s, first = recording.head.built.tick_s, recording.first_tick
+    begin = first + round((options.from_s or 0.0) / tick_s)
+    end = sys.maxsize if options.to_s is None else first + round(options.to_s / tick_s)
+    if (
+        options.from_s is not None
+        and recording.last_tick is not None
+        and begin >= recording.last_tick
+    ):
+        raise ZoneRecordingError(_too_late(recording, options, recording.last_tick))
+    return begin, end
+
+
+def _too_late(recording: Recording, options: Namespace, last_tick: int) -> str:
+    length_s = (last_tick - recording.first_tick) * recording.head.built.tick_s
+    return f"{options.file}: --from {options.from_s:g} s: the recording has {length_s:g} s"
 
 
 def _tell(recording: Recording, options: Namespace, done: _Run, verifier: Verifier | None) -> int:
@@ -147,19 +159,3 @@ def info(recording: Recording) -> Table:
     for name, value in head.about.items():
         made.add_row(name, value if len(value) <= 64 else f"{value[:61]}...")
     return made
-
-
-def _head(recording: Recording, zone: Zone, options: Namespace) -> TrajectoryHead:
-    """The head of a file of trajectories."""
-    fps = 1.0 / (zone.tick_s * ticks_between(round(1.0 / zone.tick_s, 6), options.hz))
-    told = {
-        **software(),
-        "command": f"esplanade replay {options.file.name}",
-        "world": zone.scene.name,
-        "recording": options.file.name,
-        "recording sha256": digest_if_there(options.file),
-        "seed": str(recording.head.built.seed),
-        "ticks a second": f"{1.0 / zone.tick_s:.10g}",
-        "time": f"seconds of the world; frame k is at k / {fps:.10g} s",
-    }
-    return TrajectoryHead(told, fps, zone.scene.bounds, walkable_wkt(zone.scene))

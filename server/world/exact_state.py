@@ -61,9 +61,10 @@ class ExactState:
         """Copies of all that later ticks change; call it between two ticks."""
         p = self._parts
         state = p.state
-        people = [slot for slot in state.live().tolist() if state.names[slot]]
+        live = state.live()
+        names = [state.names[slot] for slot in live.tolist()]
         return {
-            NAMES: {int(state.ids[slot]): state.names[slot] for slot in people},
+            NAMES: dict(zip(state.ids[live].tolist(), names, strict=True)),
             "avatars": state.save(),
             "people": {**p.people.save(), "watched": p.persons.save()},
             "actors": p.population.save_exactly(),
@@ -83,7 +84,7 @@ class ExactState:
                 "touching": p.contacts.touching,
             },
             "feet": p.feet.save(),
-            "steps": p.steps.save(state.live()),
+            "steps": p.steps.save(live),
             "told": p.told.save(),
         }
 

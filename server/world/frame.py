@@ -11,6 +11,7 @@ from esplanade.protocol.looks import NO_LOOK, Look
 from esplanade.protocol.snapshot import RECORD, Records, pack_records
 from esplanade.protocol.steps import StepRecords
 from esplanade.server.world.outcomes import Outcome
+from esplanade.server.world.record_rows import record_rows
 from esplanade.server.world.routes import Point
 from esplanade.server.world.state import KINDS, Floats, Slots, State
 
@@ -163,7 +164,7 @@ class Recorder:
         """All that was told last of everyone, as copies of arrays in the order of live slots."""
         live = self._state.live()
         return {
-            "records": self._records[live],
+            "records": record_rows(self._records, live),
             "arrivals": self._arrivals[live],
             "bodies": self._bodies[live],
             "looks": self._looks[live],

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from esplanade.protocol.steps import StepRecords, new_step_records
+from esplanade.server.world.record_rows import record_rows
 from esplanade.server.world.state import Slots
 
 
@@ -26,7 +27,7 @@ class LatestSteps:
 
     def save(self, slots: Slots) -> dict[str, Any]:
         """The newest steps of these slots (N,), as copies of arrays."""
-        return {"records": self.records[slots], "begun": self.begun[slots]}
+        return {"records": record_rows(self.records, slots), "begun": self.begun[slots]}
 
     def load(self, slots: Slots, saved: Mapping[str, Any]) -> None:
         """Know the steps of these slots (N,) that were saved, and no others.

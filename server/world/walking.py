@@ -67,14 +67,13 @@ class Feet:
         They are copies of arrays in the order of the live slots.
         """
         live = self._state.live()
-        stood = {
+        return {
             "arrivals": self._arrivals[live],
             "scales": self._scales[live],
             "cadences": self._cadences[live],
+            "walkers": self._walkers.save(live),
+            "failed": self._failed,
         }
-        feet = self._walkers.save(live)
-        own = {name: column for name, column in feet.items() if name not in Steps._fields}
-        return {**stood, "walkers": own, "failed": self._failed}
 
     def load(self, saved: Mapping[str, Any]) -> None:
         """Give everyone who is in the state the feet that were saved; their steps are known.
@@ -89,7 +88,7 @@ class Feet:
         self._arrivals[live], self._scales[live] = saved["arrivals"], saved["scales"]
         self._cadences[live] = saved["cadences"]
         steps = from_records(self._latest.records[live])
-        self._walkers.load(live, {**saved["walkers"], **steps._asdict()})
+        self._walkers.load(live, saved["walkers"], steps)
         self._failed = int(saved["failed"])
 
     def _update(self, tick: int, *, still: bool) -> None:

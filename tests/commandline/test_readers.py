@@ -11,7 +11,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import Field, TypeAdapter, ValidationError
 
-from esplanade.commandline.readers import Folder, InputFile, Number, OutputFile, Span, Whole
+from esplanade.commandline.readers import (
+    Folder,
+    InputFile,
+    Moment,
+    Number,
+    OutputFile,
+    Span,
+    Whole,
+)
 
 
 @pytest.mark.parametrize(
@@ -131,3 +139,17 @@ def test_spans_of_time_are_read(text: str, seconds: float) -> None:
 def test_what_is_no_span_of_time_is_refused(text: str) -> None:
     with pytest.raises(ArgumentTypeError, match="is no span of time such as 90s, 15m, 1h or 30d"):
         Span()(text)
+
+
+@pytest.mark.parametrize(
+    ("text", "seconds"),
+    [("00:12:30", 750.0), ("12:30", 750.0), ("750.5", 750.5), ("1:00:00", 3600.0), ("0", 0.0)],
+)
+def test_moments_are_read(text: str, seconds: float) -> None:
+    assert Moment()(text) == seconds
+
+
+@pytest.mark.parametrize("text", ["", "noon", "-1", "1:", ":30", "1:2:3:4", "1e3", "nan", "٣"])
+def test_what_is_no_moment_is_refused(text: str) -> None:
+    with pytest.raises(ArgumentTypeError, match=r"is no moment such as 00:12:30, 12:30 or 750\.5"):
+        Moment()(text)

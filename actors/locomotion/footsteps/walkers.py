@@ -107,28 +107,32 @@ class Walkers:
             self.steps.put(begun, self._publish(steps, begun))
 
     def save(self, slots: Ints) -> dict[str, Any]:
-        """The feet of the walkers in slots (N,), as copies of arrays of N rows, by their names."""
-        return {name: column[slots] for name, column in self._columns().items()}
+        """The feet of the walkers in slots (N,), as copies of arrays of N rows, by their names.
 
-    def load(self, slots: Ints, saved: Mapping[str, Any]) -> None:
-        """Give the walkers in slots (N,) the feet that were saved.
+        Their steps are not among them: those were published.
+        """
+        return {name: column[slots] for name, column in self._own_columns().items()}
+
+    def load(self, slots: Ints, saved: Mapping[str, Any], steps: Steps) -> None:
+        """Give the walkers in slots (N,) the feet that were saved, and their steps.
 
         Raises
         ------
         ValueError, KeyError, TypeError
             Something is missing, or has another shape, or is not finite.
         """
-        for name, column in self._columns().items():
-            rows = np.asarray(saved[name], dtype=column.dtype)
+        columns = {**self.steps._asdict(), **self._own_columns()}
+        given = {**saved, **steps._asdict()}
+        for name, column in columns.items():
+            rows = np.asarray(given[name], dtype=column.dtype)
             if rows.shape != (len(slots), *column.shape[1:]) or not np.isfinite(rows).all():
                 raise ValueError(f"feet of {len(slots)} walkers cannot have such {name}")
             column[slots] = rows
 
-    def _columns(self) -> dict[str, np.ndarray[Any, Any]]:
-        """All that belongs to one walker each, by names."""
+    def _own_columns(self) -> dict[str, np.ndarray[Any, Any]]:
+        """All that belongs to one walker each but its step, by names."""
         arrays, goals = self._arrays, self._arrays.goals._asdict()
         return {
-            **self.steps._asdict(),
             "lifted": arrays.lifted,
             "elapsed": arrays.elapsed,
             **{f"goal_{name}": column for name, column in goals.items()},

@@ -261,6 +261,13 @@ def _world(tick: int, actors: int, people: int) -> dict[str, Any]:
         "places": {place["name"]: [place["x"], place["y"], place["z"]] for place in plan["places"]},
         "revision": 1,
         "pace": {"factor": 1.0, "paused": False},
+        "recording": {
+            "state": "on",
+            "file": "stage.mcap",
+            "bytes": 1_250_000,
+            "seconds": 754,
+            "fault": None,
+        },
         "planning_interval_ticks": 1,
     }
 

@@ -11,7 +11,7 @@ from mcap.reader import make_reader
 from mcap.writer import CompressionType, Writer
 
 from esplanade.server.file_thread import Ended
-from esplanade.server.recording.file import _end_chunk
+from esplanade.server.recording.container import end_chunk
 from esplanade.server.recording.head import Built, Head
 from esplanade.server.recording.reader import Recording
 from esplanade.server.recording.zone_recording import ZoneRecording
@@ -90,7 +90,7 @@ def rewritten(
         for schema, channel, found in reader.iter_messages(log_time_order=False):
             assert schema is not None
             if time not in (None, found.log_time):
-                _end_chunk(writer)
+                end_chunk(writer)
             time = found.log_time
             if channel.topic not in topics:
                 number = writer.register_schema(schema.name, schema.encoding, schema.data)

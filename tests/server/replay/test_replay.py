@@ -51,6 +51,72 @@ def test_trajectories_are_those_of_the_world(recording: Path, tmp_path: Path) ->
     assert text.rstrip().endswith("end: {}")
 
 
+def test_a_part_begins_at_the_nearest_state_and_is_that_of_the_world(
+    recording: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    whole, part = tmp_path / "whole.csv", tmp_path / "part.csv"
+    assert replay(recording, "--trajectories", str(whole)) == 0
+    capsys.readouterr()
+    options = ("--from", "00:00:11", "--to", "12", "--verify", "--trajectories", str(part))
+    assert replay(recording, *options) == 0
+    told = capsys.readouterr().out
+    assert "200 to 241, 2.05 s" in told
+    assert "all equal" in told
+
+    def rows(path: Path) -> list[str]:
+        return [line for line in path.read_text().splitlines() if line[:1].isdigit()]
+
+    assert rows(part)
+    frames = {int(row.split(",")[0]) for row in rows(part)}
+    assert (min(frames), max(frames)) == (222, 241)
+    assert set(rows(part)) <= set(rows(whole))
+
+
+def test_nothing_is_read_between_the_beginning_and_the_nearest_state(
+    recording: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    damaged = tmp_path / "damaged.mcap"
+    data = bytearray(recording.read_bytes())
+    data[chunk_at(recording, 4) + 150] ^= 1
+    damaged.write_bytes(data)
+    assert replay(damaged, "--verify") == 1
+    assert "is damaged" in capsys.readouterr().err
+    assert replay(damaged, "--from", "10.5", "--verify") == 0
+    assert "200 to 250" in capsys.readouterr().out
+
+
+def test_a_part_of_a_file_that_is_cut_off_is_found_without_an_index(
+    recording: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    cut = tmp_path / "cut.mcap"
+    cut.write_bytes(recording.read_bytes()[: chunk_at(recording, -1) + 20])
+    assert replay(cut, "--from", "10.5", "--verify") == 0
+    assert "200 to 240" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("is_cut", [False, True])
+def test_a_moment_after_the_end_is_refused(
+    recording: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], *, is_cut: bool
+) -> None:
+    path = tmp_path / "hall.mcap"
+    data = recording.read_bytes()
+    path.write_bytes(data[: chunk_at(recording, -1) + 20] if is_cut else data)
+    assert replay(path, "--from", "1:00:00") == 1
+    length = "11.95" if is_cut else "12.45"
+    assert f"--from 3600 s: the recording has {length} s" in capsys.readouterr().err
+
+
+def test_moments_that_are_none_are_refused(
+    recording: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit, match="2"):
+        replay(recording, "--from", "noon")
+    assert "'noon' is no moment such as 00:12:30" in capsys.readouterr().err
+    with pytest.raises(SystemExit, match="2"):
+        replay(recording, "--from", "5", "--to", "5")
+    assert "--to: it must be after --from" in capsys.readouterr().err
+
+
 def test_what_is_in_a_recording_is_told(
     recording: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

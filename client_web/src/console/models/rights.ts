@@ -17,6 +17,7 @@ export const COMMAND_RIGHTS: Readonly<Record<string, Right>> = {
   remove_actors: "actors",
   move_door: "doors",
   pace: "pace",
+  record: "recordings",
   announce: "announce",
   warn: "moderate",
   mute: "moderate",
@@ -44,6 +45,7 @@ const MEANING: Readonly<Record<string, string>> = {
   actors: "add and remove actors",
   doors: "open and close doors",
   pace: "pause the world or change its pace",
+  recordings: "record the world",
   audit: "read the audit",
   accounts: "change accounts",
 };

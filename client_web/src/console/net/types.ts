@@ -49,6 +49,16 @@ export interface Zones {
   zones: readonly ZoneFacts[];
 }
 
+export interface Recording {
+  state: "on" | "off" | "failed";
+  file: string | null;
+  bytes: number;
+  /** Of the world, as far as they are written. */
+  seconds: number;
+  /** Why it has ended, where it has failed. */
+  fault: string | null;
+}
+
 export interface World {
   zone: string;
   scene: string;
@@ -63,6 +73,8 @@ export interface World {
   places: Readonly<Record<string, Point>>;
   revision: number;
   pace?: { factor: number; paused: boolean };
+  /** Null where the server has no folder for recordings. */
+  recording?: Recording | null;
   /** Ticks from one planning of an actor to its next. */
   planning_interval_ticks?: number;
 }

@@ -1,7 +1,7 @@
-/** The world that all share: its pace, its doors, and marks of moments. */
+/** The world that all share: its pace, its doors, its recording, and marks of moments. */
 
 import { css, html, nothing, type TemplateResult } from "lit";
-import type { World } from "../net/types";
+import type { Recording, World } from "../net/types";
 import { CommandingPanel } from "./commanding";
 
 const REFRESH_MS = 2000;
@@ -34,7 +34,7 @@ class WorldPanel extends CommandingPanel {
       this.world = world;
       this.requestUpdate();
     });
-    this.hearAbout(/pace|door|revert|actor/, () => void this.load());
+    this.hearAbout(/pace|door|record|revert|actor/, () => void this.load());
     this.every(REFRESH_MS, () => void this.load());
     void this.load();
   }
@@ -99,6 +99,7 @@ class WorldPanel extends CommandingPanel {
             : nothing
         }
       </fieldset>
+      ${world.recording === undefined ? nothing : this.recording(world.recording)}
       <form
         class="row"
         @submit=${(event: Event) => {
@@ -123,6 +124,26 @@ class WorldPanel extends CommandingPanel {
         })}
       </form>
     `;
+  }
+
+  private recording(recording: Recording | null): TemplateResult {
+    const on = recording?.state === "on";
+    const none = "The server has no folder for recordings.";
+    return html`<fieldset>
+      <legend>Recording</legend>
+      <div class="row">
+        <span class="grow">${recording ? recorded(recording) : none}</span>
+        ${this.button(on ? "End" : "Record", "record", () => this.record(!on), {
+          label: on ? "End the recording" : "Record the world",
+          blocked: recording ? null : none,
+        })}
+      </div>
+    </fieldset>`;
+  }
+
+  private async record(on: boolean): Promise<void> {
+    await this.carryOut({ op: "record", on });
+    await this.load();
   }
 
   private async pace(what: Record<string, number | boolean>): Promise<void> {
@@ -154,6 +175,14 @@ class WorldPanel extends CommandingPanel {
 function planned(interval: number): string {
   if (interval === 1) return "each actor in every tick";
   return `each actor once in ${interval} ticks`;
+}
+
+function recorded({ state, file, bytes, seconds, fault }: Recording): string {
+  if (state === "off") return "The world is not recorded.";
+  const size = `${(bytes / 1e6).toFixed(1)} MB`;
+  return (
+    fault ?? `${file}: ${size}, ${Math.floor(seconds / 60)} min ${seconds % 60} s of the world`
+  );
 }
 
 function span(seconds: number): string {

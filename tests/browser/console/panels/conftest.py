@@ -27,6 +27,12 @@ browser = browser_fixture("package")
 async def server(tmp_path_factory: pytest.TempPathFactory) -> AsyncIterator[Running]:
     """A small world with operators."""
     scene = entered_at(ROOM, ENTRANCE, tmp_path_factory.mktemp("room"))
-    more = {"keep_chat": True, "resume_seconds": PATIENCE_S, "operator_key": PLACING_KEY}
+    more = {
+        "keep_chat": True,
+        "resume_seconds": PATIENCE_S,
+        "operator_key": PLACING_KEY,
+        "record": tmp_path_factory.mktemp("recordings"),
+        "record_later": True,
+    }
     async with operated(OPERATORS, scene=scene, actors=ACTORS, seed=7, **more) as started:
         yield started

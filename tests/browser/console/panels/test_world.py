@@ -45,6 +45,26 @@ async def test_time_stops_goes_on_by_ticks_and_runs_at_another_pace(
     assert olga.complaints == []
 
 
+async def test_a_recording_begins_grows_and_ends(server: Running, browser: Browser) -> None:
+    olga = await arrived(browser, server, "olga")
+    await olga.show("World")
+    world = olga.panel("world")
+    state = world.get_by_role("group", name="Recording").locator("span")
+    await expect(state).to_have_text("The world is not recorded.")
+    await world.get_by_role("button", name="Record the world").click()
+    grown = re.compile(r"room\.mcap: \d\.\d MB, \d+ min ([2-9]|[1-5]\d) s of the world")
+    await expect(state).to_have_text(grown)
+    await world.get_by_role("button", name="End the recording").click()
+    await expect(state).to_have_text("The world is not recorded.")
+    await olga.show("Events")
+    await expect(olga.panel("events")).to_contain_text("room.mcap is complete")
+    vera = await arrived(browser, server, "vera")
+    await vera.show("World")
+    refused = vera.panel("world").get_by_role("button", name="Record the world")
+    await expect(refused).to_have_attribute("title", re.compile("may not record the world"))
+    assert olga.complaints == vera.complaints == []
+
+
 async def test_a_wave_comes_and_goes(server: Running, browser: Browser) -> None:
     olga = await arrived(browser, server, "olga")
     await olga.show("Actors")
