@@ -15,6 +15,10 @@ from esplanade.server.store.store import Store, StoreError
 
 ANSWER_S: Final = 5.0
 """A database that has not answered by then is away, for somebody who wants to come in."""
+TOGETHER: Final = 64
+"""So many questions are put to the database at once, which are as many as share a commit; further
+ones wait here for their turn. A herd that comes back holds up nothing else that this gateway has to
+write, and nobody of it is refused because too many wait there."""
 
 Result = TypeVar("Result")
 
@@ -34,6 +38,7 @@ class ClusterSeats:
         self._store = store
         self._gateway = gateway
         self._confirming: dict[int, int] = {}
+        self._turns = asyncio.Semaphore(TOGETHER)
         self.failures = 0
         """Questions that the database has not answered in time."""
 
@@ -94,7 +99,7 @@ class ClusterSeats:
 
     async def _certain(self, change: Callable[[Any], Result]) -> Result:
         try:
-            async with asyncio.timeout(ANSWER_S):
+            async with asyncio.timeout(ANSWER_S), self._turns:
                 return await self._store.write(change)
         except (StoreError, TimeoutError) as error:
             self.failures += 1
