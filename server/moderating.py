@@ -35,6 +35,11 @@ async def moderating(
         "Reports and lines of chat that are not kept because too many waited",
         lambda: state.later.refused,
     )
+    metrics.total(
+        "moderation_not_kept",
+        "Reports and lines of chat that the store did not take, for a reason in the log",
+        lambda: state.later.failed,
+    )
     running = asyncio.create_task(state.run())
     try:
         yield state

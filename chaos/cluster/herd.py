@@ -20,7 +20,7 @@ from esplanade.protocol.messages import Error, Hello, Welcome
 TOGETHER: Final = 40
 """In the beginning this many people come in at once."""
 FIRST_S: Final = 0.4
-LONGEST_S: Final = 8.0
+LONGEST_S: Final = 4.0
 """Waiting times before one tries again, as in the web client (`client_web/src/net/backoff.ts`)."""
 _HEAD_END: Final = b"\r\n\r\n"
 _CODE_AT: Final = 1

@@ -8,6 +8,7 @@ from typing import Any
 
 from esplanade.commandline import exit_codes, fields
 from esplanade.commandline.errors import CommandError, UsageError
+from esplanade.commandline.running import imported
 from esplanade.commandline.settings import Settings, given_settings
 from esplanade.server import logs
 from esplanade.server.clustering.membership import Membership
@@ -23,16 +24,14 @@ Work = Callable[[], Coroutine[Any, Any, None]]
 def zone(options: Namespace) -> int:
     """Run a host as the options say; returns the exit code."""
     settings, membership = _settings(options, ZONE)
-    from esplanade.server.clustering.running import run_host  # noqa: PLC0415 - needs an extra
-
+    run_host = imported("esplanade.server.clustering.running:run_host")  # it needs an extra
     return _run(settings, lambda: run_host(settings, membership, options.zones))
 
 
 def gateway(options: Namespace) -> int:
     """Run a gateway as the options say; returns the exit code."""
     settings, membership = _settings(options, GATEWAY)
-    from esplanade.server.clustering.running import run_gateway  # noqa: PLC0415 - needs an extra
-
+    run_gateway = imported("esplanade.server.clustering.running:run_gateway")
     return _run(settings, lambda: run_gateway(settings, membership))
 
 

@@ -15,6 +15,12 @@ from esplanade.server.store.store import Store, StoreError
 
 ANSWER_S: Final = 5.0
 """A database that has not answered by then is away, for somebody who wants to come in."""
+TURN_S: Final = 7.0
+"""Nobody waits longer for their turn to ask it: clients wait for 10 s until they are in."""
+TOGETHER: Final = 64
+"""So many questions are put to the database at once, which are as many as share a commit; further
+ones wait here for their turn. A herd that comes back holds up nothing else that this gateway has to
+write, and nobody of it is refused because too many wait there."""
 
 Result = TypeVar("Result")
 
@@ -34,6 +40,7 @@ class ClusterSeats:
         self._store = store
         self._gateway = gateway
         self._confirming: dict[int, int] = {}
+        self._turns = asyncio.Semaphore(TOGETHER)
         self.failures = 0
         """Questions that the database has not answered in time."""
 
@@ -94,7 +101,8 @@ class ClusterSeats:
 
     async def _certain(self, change: Callable[[Any], Result]) -> Result:
         try:
-            async with asyncio.timeout(ANSWER_S):
+            async with asyncio.timeout(TURN_S) as patience, self._turns:
+                patience.reschedule(asyncio.get_running_loop().time() + ANSWER_S)
                 return await self._store.write(change)
         except (StoreError, TimeoutError) as error:
             self.failures += 1

@@ -176,7 +176,6 @@ class Host:
         tenure = Tenure(claim)
         renewal = Renewal(self._store, tenure)
         place, zone = self._world.zone(claim.zone)
-        scenes = {each.name: each.loaded.scene for each in self._world.zones}
         renewing = asyncio.create_task(renewal.run())
         metrics = self._metrics.of_zone(zone.name)
         self._owned += 1
@@ -184,7 +183,7 @@ class Host:
             async with hosted_zone(
                 zone,
                 place,
-                scenes,
+                self._world.zones,
                 tenure,
                 renewal,
                 self._process,

@@ -1,7 +1,7 @@
 """One zone as its host runs it, from the claim to the day when it is another host's."""
 
 import asyncio
-from collections.abc import AsyncIterator, Mapping
+from collections.abc import AsyncIterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import AsyncExitStack, asynccontextmanager
 from dataclasses import dataclass
@@ -14,13 +14,14 @@ from nats.aio.client import Client
 from nats.aio.msg import Msg
 
 from esplanade.actors.warming import tables_ahead
-from esplanade.planning import Scene
+from esplanade.server.checkpoint.parts import Parts
 from esplanade.server.cluster.ownership import NotOwnerError
 from esplanade.server.cluster.tenure import Tenure
 from esplanade.server.cluster.zone_rows import keep_description
 from esplanade.server.commanding import commanding, live_view
 from esplanade.server.console.gate import Operated
 from esplanade.server.console.presets import Presets
+from esplanade.server.host.actor_portals import ActorPortals
 from esplanade.server.host.answering import Answering
 from esplanade.server.host.checkpointing import Checkpointing
 from esplanade.server.host.gateway_batches import GatewayBatches
@@ -33,7 +34,7 @@ from esplanade.server.host.portals import Portals
 from esplanade.server.host.renewal import Renewal
 from esplanade.server.host.seat_desk import SeatDesk
 from esplanade.server.host.ticking import HostTicker
-from esplanade.server.host.zone_recovery import build, digest_of, found_in
+from esplanade.server.host.zone_recovery import Found, build, digest_of, found_in
 from esplanade.server.kept import Kept
 from esplanade.server.link.frames_over_nats import FrameSender
 from esplanade.server.link.subjects import Subjects
@@ -98,14 +99,15 @@ class HostedZone:
         questions = await self.broker.subscribe(
             self.subjects.questions(zone), cb=self.portals.answer
         )
-        beside = [
-            asyncio.create_task(work)
-            for work in (
-                self.desk.run(lambda found: self.people.take_seats(found, loop.time())),
-                self.checkpoints.run(),
-                self.routes.run(self.people.route_found),
-            )
+        work = [
+            self.desk.run(lambda found: self.people.take_seats(found, loop.time())),
+            self.checkpoints.run(),
+            self.routes.run(self.people.route_found),
         ]
+        if (actors := self.ticker.actor_portals) is not None:
+            of_actors = await self.broker.subscribe(self.subjects.questions(zone), cb=actors.answer)
+            work.append(actors.run())
+        beside = [asyncio.create_task(each) for each in work]
         ticking = asyncio.create_task(self.ticker.run(self.sender))
         for task in beside:
             task.add_done_callback(self._beside_ended)
@@ -117,10 +119,14 @@ class HostedZone:
                 task.cancel()
             await asyncio.gather(ticking, *beside, return_exceptions=True)
             await self.portals.close()
+            if actors is not None:
+                await actors.close()
             await self.sender.stop()
             if not self.broker.is_closed:
                 await inputs.unsubscribe()
                 await questions.unsubscribe()
+                if actors is not None:
+                    await of_actors.unsubscribe()
         if self.tenure.holds:
             try:
                 await self.desk.flush()
@@ -158,7 +164,7 @@ class HostProcess:
 async def hosted_zone(
     zone: ZoneToServe,
     place: int,
-    scenes: Mapping[str, Scene],
+    zones: Sequence[ZoneToServe],
     tenure: Tenure,
     renewal: Renewal,
     process: HostProcess,
@@ -166,7 +172,7 @@ async def hosted_zone(
 ) -> AsyncIterator[HostedZone]:
     """Build a zone that was claimed, with all that runs it; it does not tick yet.
 
-    `place` is that of the zone among all, whose `scenes` these are.
+    `place` is that of the zone among all `zones`.
 
     Raises
     ------
@@ -185,21 +191,18 @@ async def hosted_zone(
         stack.callback(population.close)
         await loop.run_in_executor(thread, check_portals, zone, world.grid)
         watch_world(world, population, metrics)
-        described = {"storeys": storeys, **described_portals(zone, scenes)}
-        description = _description(zone, world, described)
+        description = _description(zone, zones, world, storeys)
         await store.write(partial(_keep_description, tenure, encode_description(description)))
         searching = stack.enter_context(ThreadPoolExecutor(1, thread_name_prefix="routes"))
         routes = RouteRequests(world, searching, SearchBudget())
         watch_routes(routes, metrics)
-        deriving = stack.enter_context(ThreadPoolExecutor(1, thread_name_prefix="ground"))
-        ground_work = GroundWork(world, deriving, tables_ahead(population.navigator))
         packing = stack.enter_context(ThreadPoolExecutor(1, thread_name_prefix="checkpoints"))
         owned = await stack.enter_async_context(kept_by_owner(kept, claim))
         answering = Answering(broker, subjects, zone.name)
         desk = SeatDesk(store, claim, round(settings.resume_seconds * 1e6))
         pending, moderated = PendingInputs(metrics), kept.moderation
         people = HostedPeople(world, routes, pending, desk, answering)
-        moderated.number_apart(place, len(scenes))
+        moderated.number_apart(place, len(zones))
         moderation = HostModeration(
             moderated,
             world,
@@ -259,9 +262,12 @@ async def hosted_zone(
             settings.max_clients,
         )
         live = live_view(world, storeys, console, moderation, metrics, settings, bulletin)
+        actor_portals = _actor_portals(zone, zones, world, process, tenure, metrics, parts, found)
+        # All that is redone before the first tick is derived at once, and from here on outside it.
+        deriving = stack.enter_context(ThreadPoolExecutor(1, thread_name_prefix="ground"))
         ticker = HostTicker(
             world,
-            ground_work,
+            GroundWork(world, deriving, tables_ahead(population.navigator)),
             batches,
             people,
             portals,
@@ -273,13 +279,14 @@ async def hosted_zone(
             console,
             moderation,
             live.tap,
+            actor_portals,
         )
         ticker.recorder = console.state.recorder = await stack.enter_async_context(
             recorder_of(settings, world, zone.name, metrics, bulletin)
         )
         sender = FrameSender(broker, subjects, zone.name, ticker.whole)
         digest = digest_of(zone.loaded.scene)
-        checkpoints = Checkpointing(world, parts, store, claim, digest, packing)
+        checkpoints = Checkpointing(world, parts, store, claim, digest, packing, actor_portals)
         if CONSOLE not in found.parts:
             # Recovery finds the commands after a checkpoint by the place that it has in the audit.
             await checkpoints.write()
@@ -299,6 +306,27 @@ async def hosted_zone(
             broker=broker,
             subjects=subjects,
         )
+
+
+def _actor_portals(
+    zone: ZoneToServe,
+    zones: Sequence[ZoneToServe],
+    world: Zone,
+    process: HostProcess,
+    tenure: Tenure,
+    metrics: Metrics,
+    parts: Parts,
+    found: Found,
+) -> ActorPortals | None:
+    """The portals by which actors go, as the owner before has left them; None where they go from no
+    zone to another."""
+    if not any(each.actor_exits for each in zones):
+        return None
+    exits = {name: to for name, to in zone.exits.items() if name in zone.actor_exits}
+    made = ActorPortals(world, exits, process.broker, process.subjects, process.store, tenure)
+    metrics.total("actors_came", "Actors who came from other zones", lambda: made.travel.came)
+    made.restore(parts, found.travellers)
+    return made
 
 
 def _tell_of_pace(schedule: Schedule, world: Zone, people: HostedPeople, desk: SeatDesk) -> None:
@@ -352,8 +380,10 @@ def _keep_description(tenure: Tenure, described: bytes, connection: Any) -> None
 
 
 def _description(
-    zone: ZoneToServe, world: Zone, described: Mapping[str, object]
+    zone: ZoneToServe, zones: Sequence[ZoneToServe], world: Zone, storeys: Sequence[float]
 ) -> ZoneDescription:
+    scenes = {each.name: each.loaded.scene for each in zones}
+    described = {"storeys": storeys, **described_portals(zone, scenes)}
     scene = world.scene.model_dump(mode="json", exclude={"mesh", "portals"})
     return ZoneDescription(
         scene=msgpack.packb({**scene, **described}),

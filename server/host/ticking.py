@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Final
 import structlog
 
 from esplanade.server.console.console import Console
+from esplanade.server.host.actor_portals import ActorPortals
 from esplanade.server.host.answering import Answering
 from esplanade.server.host.gateway_batches import GatewayBatches
 from esplanade.server.host.host_moderation import HostModeration
@@ -55,7 +56,9 @@ class HostTicker:
         console: Console,
         moderation: HostModeration,
         tap: Tap,
+        actor_portals: ActorPortals | None,
     ) -> None:
+        """`actor_portals` is None where actors go from no zone of the world to another."""
         self._world = world
         self._ground_work = ground_work
         self._batches = batches
@@ -69,6 +72,7 @@ class HostTicker:
         self._console = console
         self._moderation = moderation
         self._tap = tap
+        self.actor_portals = actor_portals
         self.recorder: ZoneRecorder | None = None
         """Where the ticks go from which a replay runs them again."""
         self._known = WholeState()
@@ -140,7 +144,8 @@ class HostTicker:
         now_s = asyncio.get_running_loop().time()
         self._portals.check(now_s)
         wanted = self._people.drain(self._batches.lines(), now_s, still=still)
-        return [*wanted, *self._console.drain()]
+        travellers = () if self.actor_portals is None else self.actor_portals.drain()
+        return [*wanted, *self._console.drain(), *travellers]
 
     async def _run(self, sender: FrameSender, inputs: Sequence[Input]) -> None:
         loop, start = asyncio.get_running_loop(), perf_counter()
@@ -148,6 +153,8 @@ class HostTicker:
         moved = await self._planning.think()
         frame = self._moderation.numbered(self._world.finish(moved))
         self._console.take(frame)
+        if self.actor_portals is not None:
+            self.actor_portals.travel.take(frame)
         told = replace(frame, outcomes=[], rate=self._rate())
         self._known.take(told)
         self._told, self._told_s = frame.tick, loop.time()

@@ -18,6 +18,7 @@ from esplanade.server.checkpoint.returning import Left
 from esplanade.server.checkpoint.rows import KeptSeat
 from esplanade.server.checkpoint.scene import SceneKey
 from esplanade.server.cluster.seats import ClusterSeat, seats_in
+from esplanade.server.cluster.travellers import TravellerRow, travellers_of
 from esplanade.server.cluster.zone_rows import ZoneCheckpoint, newest_checkpoint
 from esplanade.server.host import checkpointing
 from esplanade.server.loading import LoadedScene
@@ -45,6 +46,7 @@ class Found:
     parts: Mapping[str, Any] = field(default_factory=dict)
     tick: int = 0
     seats: list[ClusterSeat] = field(default_factory=list)
+    travellers: list[TravellerRow] = field(default_factory=list)
 
 
 async def found_in(store: Store, zone: str, loaded: LoadedScene, tick_s: float) -> Found:
@@ -55,20 +57,26 @@ async def found_in(store: Store, zone: str, loaded: LoadedScene, tick_s: float) 
     StoreError
         The database does not answer.
     """
-    kept, seats = await store.read(partial(_read, zone))
+    kept, seats, travellers = await store.read(partial(_read, zone))
     parts = checkpointing.unpacked(kept)
     if kept is None:
-        return Found(seats=seats)
+        return Found(seats=seats, travellers=travellers)
     fastest = max(1.0, float(parts.get(PACE, {}).get("factor", 1.0)))
     tick = kept.tick + round(fastest * kept.ago_us / 1e6 / tick_s) + SKIPPED_TICKS
     if parts and parts[checkpointing.SCENE] != digest_of(loaded.scene):
         log.info("the scene is another one than before, everybody goes to a spawn", zone=zone)
         parts = {}
-    return Found(parts, tick, seats)
+    return Found(parts, tick, seats, travellers)
 
 
-def _read(zone: str, connection: Any) -> tuple[ZoneCheckpoint | None, list[ClusterSeat]]:
-    return newest_checkpoint(connection, zone), seats_in(connection, zone)
+def _read(
+    zone: str, connection: Any
+) -> tuple[ZoneCheckpoint | None, list[ClusterSeat], list[TravellerRow]]:
+    return (
+        newest_checkpoint(connection, zone),
+        seats_in(connection, zone),
+        travellers_of(connection, zone),
+    )
 
 
 def digest_of(scene: Scene) -> str:

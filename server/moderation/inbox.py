@@ -5,6 +5,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Final, Literal
 
+from esplanade.server.checkpoint.ids import Numbers
 from esplanade.server.moderation.areas import Place
 
 MOST_OPEN: Final = 500
@@ -51,8 +52,8 @@ class Inbox:
         self._addresses: dict[int, str] = {}
         """The address from which each open report came; it is not kept."""
         self._open = 0
-        self._last = 0
-        self._apart = (0, 1)
+        self.numbers = Numbers()
+        """Numbers of reports to come, which no other process gives."""
 
     def __iter__(self) -> Iterator[Report]:
         return iter(self._reports.values())
@@ -69,7 +70,6 @@ class Inbox:
         """Begin with the reports that were kept, the oldest first."""
         for report in reports:
             self._reports[report.id] = report
-            self._last = max(self._last, report.id)
         self._open = sum(report.state == "open" for report in reports)
 
     def take_in(self, new: Iterable[Report], states: Mapping[int, tuple[str, str | None]]) -> None:
@@ -77,7 +77,6 @@ class Inbox:
         for report in new:
             if report.id not in self._reports:
                 self._reports[report.id] = report
-                self._last = max(self._last, report.id)
                 self._open += report.state == "open"
         for report_id, (state, by) in states.items():
             self.settle(report_id, "done" if state == "done" else "open", by)
@@ -96,19 +95,8 @@ class Inbox:
         if of_address >= MOST_OF_ONE:
             raise InboxFullError(f"{MOST_OF_ONE} reports of yours wait for moderators already")
 
-    def number_apart(self, place: int, of: int) -> None:
-        """Let ids be others than those that other processes give at the same time: this one is at
-        a `place` from 0 on, `of` so many."""
-        self._apart = place, of
-
-    def next_id(self) -> int:
-        """The id of the next report."""
-        place, of = self._apart
-        return self._last + 1 + (place - self._last - 1) % of
-
     def add(self, report: Report, address: str) -> list[int]:
         """Take a new report; returns the ids of those that are forgotten for it."""
-        self._last = max(self._last, report.id)
         self._reports[report.id] = report
         self._addresses[report.id] = address
         self._open += 1

@@ -4,12 +4,24 @@ import json
 from collections.abc import Callable, Collection, Mapping
 from typing import Any, Final
 
-from sqlalchemy import Connection, Select, Table, delete, insert, or_, select, update
+from sqlalchemy import Connection, Select, Table, delete, func, insert, or_, select, update
 
+from esplanade.server.checkpoint.ids import Block, reserve
 from esplanade.server.moderation.bans import Ban
 from esplanade.server.moderation.chat_log import MOST_LINES, KeptLine
 from esplanade.server.moderation.inbox import Report
 from esplanade.server.store.tables import BANS, CHAT_LINES, CHAT_RULES, REPORTS
+
+REPORT_NUMBERS: Final = 1024
+"""Numbers of reports that a process reserves at once, and again when half of them are given.
+
+Half of them are more than the reports that may wait for moderators (`inbox.MOST_OPEN`), so that
+they last while the store is away.
+"""
+
+
+class NumberTakenError(Exception):
+    """A number is that of another row already."""
 
 
 def put_ban(connection: Connection, zone: str, ban: Ban) -> None:
@@ -27,10 +39,16 @@ def lift_ban(connection: Connection, zone: str, ban: int, *, lifted: bool) -> No
 
 
 def put_report(connection: Connection, zone: str, report: Report) -> None:
-    """Write a new report."""
+    """Write a new report, unless that was done already.
+
+    Raises
+    ------
+    NumberTakenError
+        Another report has its number.
+    """
     values = {name: getattr(report, name) for name in _REPORT_FIELDS}
     place = None if report.place is None else json.dumps(report.place)
-    connection.execute(insert(REPORTS).values({**values, "zone": zone, "place": place}))
+    _put_once(connection, REPORTS, "id", {**values, "zone": zone, "place": place})
 
 
 def settle_report(
@@ -57,10 +75,26 @@ def put_rule(connection: Connection, zone: str, name: str, value: Any) -> None:
 
 
 def put_line(connection: Connection, zone: str, line: KeptLine) -> None:
-    """Write a line of chat."""
+    """Write a line of chat, unless that was done already.
+
+    Raises
+    ------
+    NumberTakenError
+        Another line has its number.
+    """
     values = {name: getattr(line, name) for name in _LINE_FIELDS}
     row = {**values, "zone": zone, "avatar": line.id, "seen": json.dumps(line.seen)}
-    connection.execute(insert(CHAT_LINES).values(row))
+    _put_once(connection, CHAT_LINES, "line", row)
+
+
+def _put_once(connection: Connection, table: Table, number: str, row: Mapping[str, Any]) -> None:
+    """Insert a row, unless it is there: the answer to an earlier attempt may have been lost."""
+    numbered = (table.c.zone == row["zone"]) & (table.c[number] == row[number])
+    there = connection.execute(select(table.c.at_us, table.c.text).where(numbered)).one_or_none()
+    if there is None:
+        connection.execute(insert(table).values(row))
+    elif tuple(there) != (row["at_us"], row["text"]):
+        raise NumberTakenError(f"{table.name}: {row[number]} is the number of another")
 
 
 def hide_line(connection: Connection, zone: str, line: int) -> None:
@@ -100,6 +134,13 @@ def all_reports(connection: Connection, zone: str) -> list[Report]:
     return _reports(connection, select(REPORTS).where(REPORTS.c.zone == zone))
 
 
+def reserve_reports(connection: Connection, zone: str) -> Block:
+    """Reserve numbers of reports that no other process gives."""
+    greatest = select(func.max(REPORTS.c.id)).where(REPORTS.c.zone == zone)
+    above = connection.execute(greatest).scalar() or 0
+    return reserve(connection, zone, "reports", REPORT_NUMBERS, above)
+
+
 def reports_but(
     connection: Connection, zone: str, known: Collection[int]
 ) -> tuple[list[Report], dict[int, tuple[str, str | None]]]:
@@ -120,7 +161,7 @@ def _reports(connection: Connection, query: Select[Any]) -> list[Report]:
             **{name: getattr(row, name) for name in _REPORT_FIELDS},
             place=None if row.place is None else tuple(json.loads(row.place)),
         )
-        for row in connection.execute(query.order_by(REPORTS.c.id)).all()
+        for row in connection.execute(query.order_by(REPORTS.c.at_us, REPORTS.c.id)).all()
     ]
 
 

@@ -2,7 +2,7 @@
 
 import asyncio
 import time
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from functools import partial
 from typing import Any, Final
@@ -10,6 +10,7 @@ from typing import Any, Final
 import structlog
 from sqlalchemy import Connection
 
+from esplanade.server.checkpoint.ids import Block
 from esplanade.server.moderation import rows
 from esplanade.server.moderation.bans import Ban, Bans
 from esplanade.server.moderation.chat_log import ChatLog, KeptLine
@@ -81,7 +82,7 @@ class ModerationState:
         """
         zone, old_us = self._store.zone, self.now_us() - BANS_KEPT_US
 
-        def begin(connection: Connection) -> tuple[Any, Any, Any, Any]:
+        def begin(connection: Connection) -> tuple[Any, Any, Any, Any, Block]:
             rows.drop_old_bans(connection, zone, old_us)
             self._drop_lines(connection)
             return (
@@ -89,13 +90,15 @@ class ModerationState:
                 rows.all_reports(connection, zone),
                 rows.all_rules(connection, zone),
                 rows.last_lines(connection, zone) if self.chat.keeps else [],
+                rows.reserve_reports(connection, zone),
             )
 
-        bans, reports, rules, lines = await self._store.write(begin)
+        bans, reports, rules, lines, numbers = await self._store.write(begin)
         for ban in bans:
             self.bans.put(ban)
         self._last_ban = max((ban.id for ban in bans), default=0)
         self.inbox.load(reports)
+        self.inbox.numbers.add(numbers)
         self._rules = rules
         for name, value in rules.items():
             self.rules = self.rules.with_rule(name, value)
@@ -112,10 +115,9 @@ class ModerationState:
         return self._last_ban
 
     def number_apart(self, place: int, of: int) -> None:
-        """Let ids of bans and reports be others than those that other processes give at the same
-        time: this one is at a `place` from 0 on, `of` so many."""
+        """Let ids of bans be others than those that other processes give at the same time: this one
+        is at a `place` from 0 on, `of` so many. A ban whose id is taken is refused."""
         self._apart = place, of
-        self.inbox.number_apart(place, of)
 
     def fact(self, subject: str, field: str) -> Any:
         """The present value of a field of a subject."""
@@ -210,13 +212,9 @@ class ModerationState:
 
         There must be room in the inbox.
         """
-        zone, known = self._store.zone, self._known[1]
-
-        def write(connection: Connection) -> None:
-            rows.put_report(connection, zone, report)
-            known.add(report.id)
-
-        if not self.later.put(write):
+        zone = self._store.zone
+        write = partial(rows.put_report, zone=zone, report=report)
+        if not self.later.put(write, partial(self._known[1].add, report.id)):
             return False
         for gone in self.inbox.add(report, address):
             self.later.put(partial(rows.drop_report, zone=zone, report=gone))
@@ -228,13 +226,8 @@ class ModerationState:
             return
         self.chat.add(line)
         if self._days:
-            zone, known = self._store.zone, self._known[2]
-
-            def write(connection: Connection) -> None:
-                rows.put_line(connection, zone, line)
-                known.add(line.line)
-
-            self.later.put(write)
+            write = partial(rows.put_line, zone=self._store.zone, line=line)
+            self.later.put(write, partial(self._known[2].add, line.line))
 
     async def look(self) -> None:
         """Take in what other processes have decided: their rules hold, and those go whom their
@@ -292,7 +285,8 @@ class ModerationState:
             await self.later.flush()
 
     async def refresh(self) -> None:
-        """Drop lines that are too old, and what was forgotten in the store.
+        """Drop lines that are too old, and what was forgotten in the store; reserve numbers of
+        reports where few are left.
 
         Raises
         ------
@@ -303,11 +297,16 @@ class ModerationState:
         known = tuple(set(ids) for ids in self._known)
         first = min((line.line for line in self.chat), default=0)
 
-        def look(connection: Connection) -> tuple[set[int], set[int], set[int]]:
-            self._drop_lines(connection)
-            return rows.ids(connection, zone, first)
+        is_low = self.inbox.numbers.left <= rows.REPORT_NUMBERS // 2
 
-        there = await self._store.write(look)
+        def look(connection: Connection) -> tuple[Sequence[set[int]], Block | None]:
+            self._drop_lines(connection)
+            numbers = rows.reserve_reports(connection, zone) if is_low else None
+            return rows.ids(connection, zone, first), numbers
+
+        there, numbers = await self._store.write(look)
+        if numbers is not None:
+            self.inbox.numbers.add(numbers)
         drops = (self.bans.drop, self.inbox.drop, self.chat.drop)
         for ids, now, all_known, drop in zip(known, there, self._known, drops, strict=True):
             for gone in ids - now:

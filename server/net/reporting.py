@@ -20,6 +20,7 @@ AT_ONCE: Final = 3
 """A person may report so often at once, and then once in that time."""
 MOST_SPEAKERS: Final = 4096
 """Of more people who have reported, the one who did so longest ago is forgotten."""
+_WAITS: Final = "too many reports wait to be written; please try again later"
 
 log = structlog.get_logger(__name__)
 
@@ -41,9 +42,13 @@ class Reporting:
         if fault is not None:
             guest.tell(fault)
             return
+        number = self._kept.inbox.numbers.take()
+        if number is None:
+            guest.tell(_full(_WAITS))
+            return
         said = self._kept.chat.get(report.line) if report.line is not None else None
         made = inbox.Report(
-            id=self._kept.inbox.next_id(),
+            id=number,
             at_us=self._kept.now_us(),
             reporter=guest.avatar_id or 0,
             reporter_name=guest.name,
@@ -55,7 +60,7 @@ class Reporting:
             said=said.text if said is not None and said.id == report.id else None,
         )
         if not self._kept.report(made, guest.address):
-            guest.tell(_full("too many reports wait to be written; please try again later"))
+            guest.tell(_full(_WAITS))
             return
         text = "Thank you. The people who look after this place can read your report now."
         notice = Notice(text=text, notice=NoticeCode.REPORT_TAKEN, arguments={"id": report.id})

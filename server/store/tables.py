@@ -22,7 +22,7 @@ from sqlalchemy import (
     UniqueConstraint,
 )
 
-REVISION: Final = "0007"
+REVISION: Final = "0008"
 """The newest migration: what the tables below are after it."""
 
 METADATA: Final = MetaData()
@@ -375,3 +375,18 @@ CLUSTER_PROCESSES: Final = Table(
     Column("drained", Boolean, nullable=False),
 )
 """Hosts and gateways that run or have run, when each was last there, and which are to end."""
+
+CLUSTER_TRAVELLERS: Final = Table(
+    "cluster_travellers",
+    METADATA,
+    Column("zone", String(64), primary_key=True),
+    Column("actor", String(128), primary_key=True),
+    Column("origin", String(64), nullable=False),
+    Column("spec", Text, nullable=False),
+    Column("parameters", Text, nullable=False),
+    Column("has_left", Boolean, nullable=False),
+    Column("has_come", Boolean, nullable=False),
+    UniqueConstraint("actor", name="cluster_travellers_by_actor"),
+)
+"""Actors on their way to a zone from another one, with what goes along as JSON; an actor is on one
+way at once. `has_left` and `has_come` tell whether the newest checkpoints of the two know of it."""

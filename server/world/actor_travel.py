@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import count
-from typing import Any, Final
+from typing import Any, Final, Protocol
 
 import structlog
 
@@ -35,6 +35,14 @@ class Traveller:
     """Is told whether the actor is in: None, or why it is not."""
 
 
+class Destination(Protocol):
+    """A zone that actors go to."""
+
+    def expect(self, traveller: Traveller) -> None:
+        """Take in an actor of another zone, in one of the next ticks."""
+        ...
+
+
 class ActorTravel:
     """Lets actors of a zone out through its portals, and takes in those of other zones.
 
@@ -47,7 +55,7 @@ class ActorTravel:
     def __init__(self, world: Zone) -> None:
         self._world = world
         self._portals: Sequence[Portal] = ()
-        self._exits: Mapping[str, tuple[ActorTravel, Point]] = {}
+        self._exits: Mapping[str, tuple[Destination, Point]] = {}
         self._numbers = count(-1, -1)
         self._expected: list[Traveller] = []
         self._asked: dict[int, Traveller] = {}
@@ -62,7 +70,7 @@ class ActorTravel:
         """The comings and goings in the checkpoint that the world goes on from."""
 
     def open(
-        self, portals: Iterable[Portal], exits: Mapping[str, tuple["ActorTravel", Point]]
+        self, portals: Iterable[Portal], exits: Mapping[str, tuple[Destination, Point]]
     ) -> None:
         """Let actors leave by some of the portals: to where, by the name of the portal."""
         self._portals, self._exits = [each for each in portals if each.name in exits], exits
@@ -70,6 +78,11 @@ class ActorTravel:
     def expect(self, traveller: Traveller) -> None:
         """Take in an actor of another zone, in one of the next ticks."""
         self._expected.append(traveller)
+
+    def refusal(self, traveller: Traveller) -> Fault | None:
+        """The reason for which an actor of another zone would not be taken in now; None if it
+        would."""
+        return self._admitted(traveller)[2]
 
     def move(self, to: "ActorTravel", bounds: tuple[float, float, float, float]) -> None:
         """Let all actors go over to a zone that takes the place of this one, whose scene has
@@ -156,7 +169,7 @@ class ActorTravel:
         self._inside = set(here)
         return came
 
-    def _send(self, actor: str, to: "ActorTravel", arrival: Point, portal: str = "") -> None:
+    def _send(self, actor: str, to: Destination, arrival: Point, portal: str = "") -> None:
         self._under_way.add(actor)
         spec = self._world.actors[actor].model_copy(update={"place": arrival, "near": True})
         self._inputs.append(HoldActors(next(self._numbers), (actor,), held=True))
@@ -176,6 +189,15 @@ class ActorTravel:
         to.expect(Traveller(spec, parameters, ended))
 
     def _take_in(self, traveller: Traveller) -> None:
+        traveller, command, fault = self._admitted(traveller)
+        if fault is not None:
+            traveller.ended(fault)
+            return
+        self._asked[command.command] = traveller
+        self._inputs.append(command)
+
+    def _admitted(self, traveller: Traveller) -> tuple[Traveller, AddActors, Fault | None]:
+        """A traveller as it would come in, by which command, and why that cannot be."""
         command = self._command(traveller)
         fault = self._world.check(command)
         if fault is not None and fault.code is FaultCode.UNKNOWN_PLACE:
@@ -183,11 +205,7 @@ class ActorTravel:
             traveller = replace(traveller, spec=wandering)
             command = self._command(traveller)
             fault = self._world.check(command)
-        if fault is not None:
-            traveller.ended(fault)
-            return
-        self._asked[command.command] = traveller
-        self._inputs.append(command)
+        return traveller, command, fault
 
     def _command(self, traveller: Traveller) -> AddActors:
         return AddActors(next(self._numbers), (traveller.spec,), (traveller.parameters,))

@@ -1,5 +1,6 @@
 """Rules for every command: help and faults load nothing heavy, and say all there is to say."""
 
+import gc
 import os
 import subprocess
 import sys
@@ -11,6 +12,7 @@ import pytest
 
 from esplanade.cli import COMMANDS, parser_of
 from esplanade.commandline.parser import Parser
+from esplanade.commandline.running import imported
 
 HEAVY = {
     *("alembic", "argon2", "psycopg", "sqlalchemy"),
@@ -184,3 +186,14 @@ def test_a_wrong_variable_is_one_line_and_loads_nothing_heavy() -> None:
     fault = "ESPLANADE_BOTS_JOIN_RATE: 'fast' is no number from 0.1 to 10000"
     assert line == f"esplanade bots: {fault}; see `esplanade bots --help`"
     assert not loaded & HEAVY
+
+
+def test_an_import_leaves_the_collector_of_garbage_as_it_was() -> None:
+    imported("esplanade.commandline.exit_codes:OK")
+    assert gc.isenabled()
+    gc.disable()
+    try:
+        imported("esplanade.commandline.exit_codes:OK")
+        assert not gc.isenabled()
+    finally:
+        gc.enable()

@@ -1,7 +1,7 @@
 /** Waiting times between attempts to connect again. */
 
 const FIRST_MS = 400;
-const LONGEST_MS = 8000;
+const LONGEST_MS = 4000;
 
 /**
  * Doubles with every failed attempt and is spread over its upper half, so that a crowd of clients

@@ -2,12 +2,13 @@
 
 import asyncio
 from contextlib import suppress
+from dataclasses import replace
 
 import pytest
 
 from esplanade.server.accounts.identity import MACHINE
 from esplanade.server.audit.log import AuditLog
-from esplanade.server.moderation import inbox, state
+from esplanade.server.moderation import inbox, rows, state
 from esplanade.server.moderation.bans import Ban
 from esplanade.server.moderation.chat_log import KeptLine
 from esplanade.server.moderation.inbox import Inbox, InboxFullError, Report
@@ -33,6 +34,13 @@ async def opened(store: SqlStore, **more: object) -> ModerationState:
     made = ModerationState(store, **more)  # type: ignore[arg-type]
     await made.load()
     return made
+
+
+def given(held: ModerationState) -> int:
+    """The number of the next report."""
+    number = held.inbox.numbers.take()
+    assert number is not None
+    return number
 
 
 async def test_all_is_there_again(store: SqlStore) -> None:
@@ -143,17 +151,14 @@ async def test_decisions_of_other_processes_are_taken_in(store: SqlStore) -> Non
 
 async def test_reports_to_other_processes_are_taken_in(store: SqlStore) -> None:
     east, west = await opened(store), await opened(store)
-    east.number_apart(0, 2)
-    west.number_apart(1, 2)
-    numbers = east.inbox.next_id(), west.inbox.next_id()
-    assert len({*numbers}) == 2
+    numbers = given(east), given(west)
     for one, number in zip((east, west), numbers, strict=True):
         assert one.report(report(number), "there")
         await one.later.flush()
     for one in (east, west):
         await one.look()
         assert (sorted(each.id for each in one.inbox), one.inbox.open) == (sorted(numbers), 2)
-    assert {east.inbox.next_id(), west.inbox.next_id()}.isdisjoint(numbers)
+    assert {given(east), given(west)}.isdisjoint(numbers)
     await west.decide({f"report:{numbers[0]}": {"state": "done"}}, [], "mona")
     await east.look()
     settled = east.inbox.get(numbers[0])
@@ -167,3 +172,38 @@ async def test_a_look_that_a_decision_overtakes_drops_nothing(store: SqlStore) -
     await held.decide({"ban:1": {"banned": True}}, [ban(1)], None)
     await looking
     assert held.fact("ban:1", "banned") is True
+
+
+async def test_a_host_that_was_frozen_shares_no_number_with_its_successor(store: SqlStore) -> None:
+    frozen = await opened(store)
+    frozen.number_apart(0, 2)
+    assert frozen.report(report(given(frozen)), "there")  # and it is frozen before this is written
+    successor = await opened(store)
+    successor.number_apart(0, 2)
+    assert successor.report(replace(report(given(successor)), text="shouts"), "there")
+    await successor.later.flush()
+    assert frozen.report(replace(report(given(frozen)), text="pushes"), "there")
+    await frozen.later.flush()
+    assert (frozen.later.waiting, frozen.later.failed) == (0, 0)
+    await frozen.look()
+    for held in (frozen, await opened(store)):
+        assert sorted(each.text for each in held.inbox) == ["is rude", "pushes", "shouts"]
+
+
+async def test_more_numbers_of_reports_are_reserved_before_the_last_is_given(
+    store: SqlStore, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(rows, "REPORT_NUMBERS", 4)
+    east, west = await opened(store), await opened(store)
+    numbers = [given(east), given(east)]
+    for held in (east, west):
+        await held.refresh()
+    assert (east.inbox.numbers.left, west.inbox.numbers.left) == (6, 4)
+    numbers += [given(each) for each in (east, west) for _ in range(each.inbox.numbers.left)]
+    assert len({*numbers}) == len(numbers) == 12
+    assert east.inbox.numbers.take() is None
+
+
+async def test_numbers_go_on_above_reports_of_a_version_that_reserved_none(store: SqlStore) -> None:
+    await store.write(lambda connection: rows.put_report(connection, store.zone, report(5000)))
+    assert given(await opened(store)) == 5001
