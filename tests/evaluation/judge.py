@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from esplanade.evaluation.episodes import Episode
-from esplanade.evaluation.policies.policy import Observation, Person, Policy, Task
+from esplanade.evaluation.policies.policy import Observation, Person, Policy, Prescient, Task
 from esplanade.evaluation.replay import Floats, Replay
 from esplanade.evaluation.rules import Rules
 
@@ -36,9 +36,14 @@ class Judged:
 
     def __init__(self, policy: Policy, replay: Replay, rules: Rules, episode: Episode) -> None:
         self._policy = policy
-        self._task = Task(rules, replay, episode)
+        self._replay, self._episode = replay, episode
+        self._task = Task(
+            rules, replay.name, replay.obstacles, replay.bounds, episode.start, episode.goal
+        )
 
     def reset(self, info: object) -> None:
+        if isinstance(self._policy, Prescient):
+            self._policy.foresee(self._replay, self._episode)
         self._policy.reset(self._task)
 
     def __call__(
