@@ -17,7 +17,7 @@ from esplanade.commandline.readers import (
 )
 from esplanade.commandline.recording_settings import add_reading, check_reading
 from esplanade.commandline.trajectory_files import check_suffix
-from esplanade.evaluation.policies.outside.naming import address_of, is_outside, label_of
+from esplanade.evaluation.policy_names import address_of, is_outside, label_of
 from esplanade.evaluation.setting_names import NAMES
 
 POLICIES: Final = {

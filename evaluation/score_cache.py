@@ -11,7 +11,7 @@ from types import TracebackType
 from typing import Any, Final, Self, TextIO
 
 from esplanade.evaluation.episodes import Episode
-from esplanade.evaluation.policies.outside.naming import digest_of_policy, is_outside
+from esplanade.evaluation.policy_names import digest_of_policy, is_outside
 from esplanade.evaluation.scores import Score
 from esplanade.evaluation.trials import Source, Trial
 from esplanade.recordings import walls_beside

@@ -12,7 +12,7 @@ from typing import Any, Final
 from esplanade.commandline.provenance import digest_of
 from esplanade.evaluation.episodes import Episode, choose_episodes
 from esplanade.evaluation.policies import make_policy
-from esplanade.evaluation.policies.outside.naming import is_outside, label_of, own_options
+from esplanade.evaluation.policy_names import is_outside, label_of, own_options
 from esplanade.evaluation.replay import Interpolation, Replay
 from esplanade.evaluation.rules import Rules
 from esplanade.evaluation.simulation import Environment

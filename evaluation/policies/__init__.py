@@ -4,8 +4,8 @@ from collections.abc import Callable, Mapping
 from importlib import import_module
 from typing import Any, Final, NamedTuple, cast
 
-from esplanade.evaluation.policies.outside.naming import is_outside
 from esplanade.evaluation.policies.policy import Policy, PolicyError
+from esplanade.evaluation.policy_names import is_outside
 
 
 class Entry(NamedTuple):

@@ -109,8 +109,13 @@ class ZoneRecording:
             self._thread.fail(error)
 
     def close(self) -> None:
-        """Write what waits and complete the file, within a bounded time."""
-        if self._ticks and self._thread.fault is None:
+        """Write what waits and complete the file, within a bounded time.
+
+        In the middle of a tick there is no state that a replay could compare: the part of a second
+        that has not ended then is left out.
+        """
+        ended = bool(self._ticks) and self._ticks[-1][0].tick == self._zone.tick
+        if ended and self._thread.fault is None:
             self._hand_over()
         self._thread.close()
 

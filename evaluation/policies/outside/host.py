@@ -18,7 +18,7 @@ from esplanade.evaluation.policies.outside.messages import (
     observation_of,
     task_of,
 )
-from esplanade.evaluation.policies.outside.naming import maker_of
+from esplanade.evaluation.policy_names import maker_of
 
 _HERE: Final = str(Path(__file__).parent)
 

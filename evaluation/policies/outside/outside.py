@@ -15,7 +15,7 @@ from esplanade.evaluation.policies.outside.messages import (
     told_observation,
     told_task,
 )
-from esplanade.evaluation.policies.outside.naming import address_of, place_of
+from esplanade.evaluation.policy_names import address_of, place_of
 
 STARTS_WITHIN_S: Final = 120.0
 """A policy may load what it needs, such as weights, for so long."""

@@ -12,8 +12,8 @@ import pytest
 
 from esplanade.evaluation.policies import make_policy
 from esplanade.evaluation.policies.outside import outside
-from esplanade.evaluation.policies.outside.naming import digest_of_policy, is_outside, label_of
 from esplanade.evaluation.policies.policy import Policy, PolicyError
+from esplanade.evaluation.policy_names import digest_of_policy, is_outside, label_of
 from esplanade.evaluation.simulation import EpisodeResult, run_episode
 from esplanade.recordings import Obstacles
 from tests.evaluation.worlds import RULES, environment, trip, walk
