@@ -15,7 +15,7 @@ class RecordingError(Exception):
 
 
 class Recorder(Protocol):
-    """Whatever writes the recordings of a world."""
+    """The part of a server that writes the recordings of a world."""
 
     @property
     def is_on(self) -> bool:

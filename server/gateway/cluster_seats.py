@@ -18,7 +18,7 @@ ANSWER_S: Final = 5.0
 TURN_S: Final = 7.0
 """Nobody waits longer for their turn to ask it: clients wait for 10 s until they are in."""
 TOGETHER: Final = 64
-"""So many questions are put to the database at once, which are as many as share a commit; further
+"""The most questions that are put to the database at once, as many as share a commit; further
 ones wait here for their turn. A herd that comes back holds up nothing else that this gateway has to
 write, and nobody of it is refused because too many wait there."""
 

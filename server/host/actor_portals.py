@@ -40,7 +40,7 @@ ASK_S: Final = 1.0
 ASKED_TIMES: Final = 5
 RETRY_S: Final = 0.3
 QUESTIONS: Final = 64
-"""So many questions of other hosts may wait for the next tick; further ones are left out, and
+"""The most questions of other hosts that wait for the next tick; further ones are left out, and
 asked again."""
 ACTOR: Final = "actor"
 ACTOR_SENT: Final = "actor_sent"

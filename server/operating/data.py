@@ -102,7 +102,7 @@ def forget(options: Namespace) -> int:
 
 def _forget_in_recordings(folder: Path, person: str) -> int:
     try:
-        # What reads recordings is in an extra.
+        # An extra has the library that reads recordings.
         from esplanade.server.recording.forgetting import forget_in_recordings  # noqa: PLC0415
     except ModuleNotFoundError as error:
         package = (error.name or "").partition(".")[0]

@@ -6,7 +6,7 @@ from typing import IO, Any, Final
 from mcap.writer import CompressionType, Writer
 
 PROFILE: Final = "esplanade"
-"""What the header of each recording says that it is."""
+"""The name of this kind of file, in the header of each recording."""
 ABOUT: Final = "esplanade recording"
 """The name of the record of metadata that says what made a file."""
 WRITTEN_BY: Final = "written by"

@@ -112,7 +112,7 @@ class ZoneRecorder:
     def _made(self) -> "ZoneRecording":
         """Make a recording that has begun to write its file."""
         try:
-            # What writes recordings is in an extra.
+            # An extra has the library that writes recordings.
             from esplanade.server.recording.folder import RecordingFolder  # noqa: PLC0415
             from esplanade.server.recording.head import Built, Head  # noqa: PLC0415
             from esplanade.server.recording.zone_recording import ZoneRecording  # noqa: PLC0415

@@ -27,7 +27,7 @@ _NO_BOUND: Final = 2**62
 
 TakenTick = tuple[Frame, Sequence[Input], npt.NDArray[np.int64]]
 TakenSecond = tuple[list[TakenTick], int, int, Mapping[str, Any]]
-"""What a `Tick` and a `Second` are made of, which the thread that writes does."""
+"""The parts of a `Tick` and of a `Second`, which the thread that writes puts together."""
 
 log = structlog.get_logger(__name__)
 

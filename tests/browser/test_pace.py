@@ -19,7 +19,7 @@ pytestmark = [pytest.mark.browser, pytest.mark.asyncio(loop_scope="module")]
 SMALL: Final[ViewportSize] = {"width": 480, "height": 360}
 WALK_MPS: Final = 1.4
 BACK_M: Final = 0.02
-"""Nobody who walks on is drawn further back than this in a usual frame."""
+"""In a usual frame a body that walks on is drawn back by no more than this."""
 
 USUAL_FRAME_S: Final = 1 / 30
 """In a frame that takes longer, more of a correction that fades is drawn."""

@@ -72,7 +72,7 @@ export function outlookOf(plan: Plan): string {
   return `${leadsThere ? "there in" : "path for"} ${seconds.toFixed(0)} s, ${people}`;
 }
 
-/** How many people a guide leads, and whether one is among them. */
+/** The number of people whom a guide leads, in words, and whether one is among them. */
 export function followersOf({ followers }: PlanTour, ownId: number): string {
   const others = followers.filter((id) => id !== ownId).length;
   const people = others === 1 ? "1 person" : `${others} people`;

@@ -38,7 +38,7 @@ export interface Avatar {
   away: boolean;
 }
 
-/** What is told of an avatar that has another body or look. */
+/** The body and look that an avatar has from now on. */
 type Reshaped = Pick<EntityInfo, "id" | "radius" | "leg_m" | "stature_m" | "look">;
 
 /** The least time that the own steps are drawn behind their usual arrival. */

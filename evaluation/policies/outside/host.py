@@ -6,7 +6,6 @@ this process but what the robot has seen.
 """
 
 import os
-import sys
 import traceback
 from collections.abc import Mapping
 from pathlib import Path
@@ -84,7 +83,6 @@ def main() -> None:
     nothing = os.open(os.devnull, os.O_RDONLY)
     os.dup2(nothing, 0)
     os.dup2(2, 1)
-    sys.path.insert(0, "")
     serve(questions, answers)
 
 

@@ -6,7 +6,6 @@ in the frame of the recording.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -32,7 +31,7 @@ class Person:
 
 @dataclass(frozen=True)
 class Observation:
-    """What the robot sees at one tick."""
+    """The robot's view at one tick."""
 
     time_s: float
     """The seconds since the episode began."""
@@ -75,6 +74,3 @@ class Velocities(Protocol):
 
     def velocity(self, observation: Observation) -> tuple[float, float]:
         """The velocity (2,) at which the robot wants to walk now."""
-
-
-Explanation = Mapping[str, object]

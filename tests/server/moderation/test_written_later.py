@@ -1,4 +1,4 @@
-"""What is written later holds nothing up: not while the store is away, nor where it refuses."""
+"""Changes that are written later hold nothing up, while the store is away or where it refuses."""
 
 import asyncio
 from collections.abc import Callable

@@ -49,8 +49,18 @@ def script(ann: int) -> dict[int, list[Input]]:
     }
 
 
-def record(path: Path, ticks: int = 250, *, names: bool = False, chat: bool = False) -> list[Ended]:
-    """Record a world for so many ticks; returns the faults that ended it early."""
+def record(
+    path: Path,
+    ticks: int = 250,
+    *,
+    names: bool = False,
+    chat: bool = False,
+    ends_in_a_tick: bool = False,
+) -> list[Ended]:
+    """Record a world for so many ticks; returns the faults that ended it early.
+
+    The recording ends between two ticks, or in the middle of the next one.
+    """
     faults: list[Ended] = []
     world = hall()
     built = Built.of(world.zone, "hall", 3, 0.25, names=names, chat=chat)
@@ -61,6 +71,8 @@ def record(path: Path, ticks: int = 250, *, names: bool = False, chat: bool = Fa
         patch.setattr("esplanade.server.net.ground_work.taken_s", lambda: 0.0)
         for tick in range(1, ticks + 1):
             recording.take(world.frame(*at.get(tick, [])), world.inputs[-1])
+    if ends_in_a_tick:
+        world.zone.begin([Join(2, "Cid", None)])
     recording.close()
     world.population.close()
     return faults

@@ -10,7 +10,7 @@ from esplanade import bots, cli
 from esplanade.server.app import Running, running
 from esplanade.server.recording.folder import is_being_written
 from esplanade.server.settings import ServerSettings
-from tests.patience import PATIENCE_S
+from tests.patience import COMPILING_PATIENCE_S
 from tests.server.console.operators import Operator, operator
 from tests.server.populated import HALL
 
@@ -55,7 +55,7 @@ async def test_recordings_begin_and_end_while_people_are_there(
     settings: ServerSettings, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     folder = tmp_path / "recordings"
-    async with asyncio.timeout(PATIENCE_S), running(settings) as server:
+    async with asyncio.timeout(COMPILING_PATIENCE_S), running(settings) as server:
         olga = await operator(server, "olga", "director")
         off = {"state": "off", "file": None, "bytes": 0, "seconds": 0, "fault": None}
         assert await told(olga) == off
@@ -89,7 +89,7 @@ async def test_what_cannot_be_recorded_is_refused(settings: ServerSettings, tmp_
     wrong = tmp_path / "recordings"
     wrong.write_text("this is no folder")
     command = {"op": "record", "on": True}
-    async with asyncio.timeout(PATIENCE_S), running(settings) as server:
+    async with asyncio.timeout(COMPILING_PATIENCE_S), running(settings) as server:
         olga = await operator(server, "olga", "director")
         tom = await operator(server, "tom", "tuner")
         assert (await tom.send(command))[0] == 403
@@ -103,7 +103,7 @@ async def test_what_cannot_be_recorded_is_refused(settings: ServerSettings, tmp_
         assert (await told(olga))["state"] == "off"
         assert (await olga.send({**command, "on": False}))[0] == 200
     nowhere = settings.model_copy(update={"record": None, "record_later": False})
-    async with asyncio.timeout(PATIENCE_S), running(nowhere) as server:
+    async with asyncio.timeout(COMPILING_PATIENCE_S), running(nowhere) as server:
         olga = await operator(server, "olga", "director")
         assert await told(olga) is None
         _, answer = await olga.send(command)
@@ -118,7 +118,7 @@ async def test_a_shell_records(
         assert await asyncio.to_thread(cli.main, ["op", *words]) == 0
         return capsys.readouterr().out
 
-    async with asyncio.timeout(PATIENCE_S), running(settings) as server:
+    async with asyncio.timeout(COMPILING_PATIENCE_S), running(settings) as server:
         olga = await operator(server, "olga", "director")
         monkeypatch.setenv("ESPLANADE_URL", f"http://127.0.0.1:{server.private_port}")
         monkeypatch.setenv("ESPLANADE_TOKEN", olga.token)

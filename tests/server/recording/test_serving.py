@@ -11,7 +11,7 @@ from esplanade.server.loading import LoadingError
 from esplanade.server.recording import zone_recording
 from esplanade.server.recording.reader import Recording
 from esplanade.server.settings import ServerSettings
-from tests.patience import PATIENCE_S
+from tests.patience import COMPILING_PATIENCE_S
 from tests.server.client import joined
 from tests.server.http import get
 from tests.server.populated import HALL
@@ -64,7 +64,7 @@ async def walk(server: Running) -> None:
 async def test_a_world_with_people_runs_again_bit_for_bit(
     settings: ServerSettings, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    async with asyncio.timeout(PATIENCE_S), running(settings) as server:
+    async with asyncio.timeout(COMPILING_PATIENCE_S), running(settings) as server:
         await walk(server)
         metrics = server.metrics.exposition().decode()
     assert "esplanade_recording_ended 0.0" in metrics
@@ -108,7 +108,7 @@ async def test_a_world_goes_on_when_its_recording_ends(
     settings: ServerSettings, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(zone_recording, "MOST_SECONDS", 0)
-    async with asyncio.timeout(PATIENCE_S), running(settings) as server:
+    async with asyncio.timeout(COMPILING_PATIENCE_S), running(settings) as server:
         await ticks(server, 20)
         while len(list(server.live.events)) < 2:  # they are told of by another thread
             await ticks(server, 2)

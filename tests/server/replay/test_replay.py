@@ -41,6 +41,17 @@ def test_all_digests_are_equal(recording: Path, capsys: pytest.CaptureFixture[st
     assert "1 to 250" in told
 
 
+def test_a_recording_that_ends_in_the_middle_of_a_tick_has_only_what_can_be_compared(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "hall.mcap"
+    assert record(path, 50, ends_in_a_tick=True) == []
+    assert replay(path, "--verify") == 0
+    told = capsys.readouterr().out
+    assert "3 digests, all equal" in told
+    assert "1 to 40" in told
+
+
 def test_trajectories_are_those_of_the_world(recording: Path, tmp_path: Path) -> None:
     out = tmp_path / "walks.csv"
     assert replay(recording, "--trajectories", str(out), "--hz", "10") == 0
