@@ -12,7 +12,7 @@ from typing import Final
 import msgpack
 
 from esplanade.protocol.codes import Kind
-from esplanade.protocol.looks import NO_LOOK, Look
+from esplanade.protocol.looks import NO_LOOK, Look, parts_of
 
 Place = tuple[float, float, float]
 
@@ -59,7 +59,7 @@ def pack_constants(entity: Entity) -> tuple[bytes, bytes]:
         packer.pack(getattr(entity, name))
     if entity.look != NO_LOOK:
         packer.pack("look")
-        packer.pack(entity.look)
+        packer.pack(parts_of(entity.look))
     return head, packer.bytes()
 
 
