@@ -4,13 +4,14 @@ import tseslint from "typescript-eslint";
 
 /** Folders that a folder may not import from; everyone may know the shape of messages and steps. */
 const walls = {
-  net: ["world", "render", "input", "ui", "app", "console"],
-  world: ["net", "render", "input", "ui", "app", "console"],
-  render: ["net", "input", "ui", "app", "console"],
-  input: ["net", "render", "ui", "app", "console"],
+  net: ["language", "world", "render", "input", "ui", "app", "console"],
+  language: ["net", "world", "render", "input", "ui", "app", "console"],
+  world: ["language", "net", "render", "input", "ui", "app", "console"],
+  render: ["language", "net", "input", "ui", "app", "console"],
+  input: ["language", "net", "render", "ui", "app", "console"],
   ui: ["render", "input", "app", "console"],
   app: ["console"],
-  console: ["render", "input", "ui", "app"],
+  console: ["language", "render", "input", "ui", "app"],
 };
 
 /** `render` may use all of three.js; `world` may use its vectors, which need no WebGL. */

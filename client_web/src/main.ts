@@ -7,12 +7,19 @@ import { MapView } from "./app/mapview";
 import type { Picture } from "./app/picture";
 import { View } from "./app/view";
 import { listenToPointer } from "./input/pointer";
+import { speak } from "./language/words";
 import { socketAddress } from "./net/address";
 import { Seats } from "./net/seats";
 import { browserLocks, channelLocks } from "./net/tablocks";
 import { drawsDepth } from "./render/hardware";
 import { byId } from "./ui/dom";
 import { setUpHelp, storedChoice } from "./ui/help";
+import { preferredLanguage, setUpLanguageMenus } from "./ui/languagemenu";
+import { writePage } from "./ui/writing";
+
+await speak(preferredLanguage());
+writePage();
+setUpLanguageMenus();
 
 const picture = byId("picture", HTMLCanvasElement);
 const calm = window.matchMedia("(prefers-reduced-motion: reduce)").matches;

@@ -40,7 +40,12 @@ class SilenceNotices:
             self._tell(NoticeCode.RESUMED, _RESUMED, 1.0)
 
     def _tell(self, code: NoticeCode, text: str, rate: float) -> None:
-        arguments = {"factor": 1.0, "rate": rate, "server_time": self._server_time()}
+        arguments = {
+            "factor": 1.0,
+            "rate": rate,
+            "server_time": self._server_time(),
+            "silent": True,
+        }
         frame = frames.message(Notice(text=text, notice=code, arguments=arguments))
         for session in self._sessions.values():
             session.outbox.post(frame)

@@ -110,16 +110,20 @@ def overlapping(boxes: list[dict[str, Any]]) -> Iterator[str]:
             yield f"{a['name']} and {b['name']}"
 
 
+@pytest.mark.parametrize("locale", ["en-US", "de-DE"])
 @pytest.mark.parametrize(
     ("sizes", "touch"), [(WINDOWS, False), (PHONES, True)], ids=["mouse", "touch"]
 )
 async def test_no_control_covers_another_whatever_the_window(
-    browser: Browser, url: str, sizes: list[tuple[int, int]], touch: bool
+    browser: Browser, url: str, sizes: list[tuple[int, int]], touch: bool, locale: str
 ) -> None:
-    """With each panel open, with the chat open, and with something told."""
+    """With each panel open, with the chat open, and with something told; German has long words."""
     width, height = sizes[-1]
     context = await browser.new_context(
-        viewport={"width": width, "height": height}, has_touch=touch, is_mobile=touch
+        viewport={"width": width, "height": height},
+        has_touch=touch,
+        is_mobile=touch,
+        locale=locale,
     )
     visitor = await Visitor.arrive(context, url)
     await visitor.join("Ann")

@@ -1,6 +1,7 @@
 /** Links: the first view and the offer to go where one leads, and links to share. */
 
 import type { Place } from "../render/picking";
+import { words } from "../language/words";
 import { byId } from "../ui/dom";
 import { Invitation } from "../ui/invitation";
 import { ShareBar } from "../ui/share";
@@ -41,7 +42,11 @@ export class Links {
 
   /** Ask whether to follow somebody who is here. */
   inviteTo(name: string, follow: () => void): void {
-    this.invitation.open(`The link leads to ${name}, who is here.`, "Follow", follow);
+    this.invitation.open(
+      () => words.links.toPerson(name),
+      () => words.links.follow,
+      follow,
+    );
   }
 
   /** The world is a new one: the next frame turns the camera. */
@@ -62,9 +67,13 @@ export class Links {
     const { at, lookYaw, view } = this;
     if (at) {
       view.camera.yaw = Math.atan2(at.y - own.pose.y, at.x - own.pose.x);
-      this.invitation.open("The link leads to a place here.", "Walk there", () => {
-        this.walkTo(at);
-      });
+      this.invitation.open(
+        () => words.links.toPlace,
+        () => words.links.walk,
+        () => {
+          this.walkTo(at);
+        },
+      );
     } else if (lookYaw === null) view.lookAround(world);
     if (lookYaw !== null) view.camera.yaw = lookYaw;
     this.at = this.lookYaw = null;

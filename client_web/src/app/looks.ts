@@ -3,6 +3,7 @@
 import { isSpoken } from "../net/codec";
 import type { Look, Welcome } from "../net/messages";
 import { HAIR_COLOURS, HAIRDOS, SHIRTS, SKINS, TROUSERS } from "../render/clothing";
+import { words } from "../language/words";
 import { Mannequin } from "../render/mannequin";
 import { byId } from "../ui/dom";
 import { LookEditor } from "../ui/lookeditor";
@@ -37,11 +38,23 @@ export class Looks {
     this.look = this.tried = stored ?? randomLook(Math.random);
     if (!stored) this.keep(this.look);
     const parts = [
-      { title: "Shirt", choices: SHIRTS },
-      { title: "Trousers", choices: TROUSERS },
-      { title: "Hair", choices: HAIRDOS.map(([name]) => [name, null] as const) },
-      { title: "Hair colour", choices: HAIR_COLOURS },
-      { title: "Skin", choices: SKINS },
+      { title: () => words.look.parts.shirt, choices: named(SHIRTS, () => words.look.shirts) },
+      {
+        title: () => words.look.parts.trousers,
+        choices: named(TROUSERS, () => words.look.trousers),
+      },
+      {
+        title: () => words.look.parts.hair,
+        choices: named(
+          HAIRDOS.map(([name]) => [name, null] as const),
+          () => words.look.hairdos,
+        ),
+      },
+      {
+        title: () => words.look.parts.hairColour,
+        choices: named(HAIR_COLOURS, () => words.look.hairColours),
+      },
+      { title: () => words.look.parts.skin, choices: named(SKINS, () => words.look.skins) },
     ];
     this.editor = new LookEditor(
       parts,
@@ -109,6 +122,14 @@ export class Looks {
     this.look = look;
     this.storage.setItem(LOOK_KEY, JSON.stringify(look));
   }
+}
+
+/** Choices with their names in the language that the page speaks. */
+function named<N extends string, T>(
+  choices: readonly (readonly [N, T])[],
+  names: () => Readonly<Record<N, string>>,
+): (readonly [() => string, T])[] {
+  return choices.map(([name, looks]) => [() => names()[name], looks] as const);
 }
 
 /** The look that was stored; null if it is none whose every part there is. */

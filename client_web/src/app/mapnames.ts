@@ -1,5 +1,7 @@
 /** Names, and what was said, beside the marks of a map, as far as there is room. */
 
+import { isolated, name as named } from "../language/phrase";
+import { words } from "../language/words";
 import { LabelRoom } from "../render/labelroom";
 import type { Avatar } from "../world/world";
 
@@ -45,8 +47,11 @@ export class MapNames {
     pen.textBaseline = "middle";
     for (const avatar of sorted) {
       const said = this.said.get(avatar.id);
-      const away = avatar.away ? " · away" : "";
-      const text = said ? `${avatar.name}: ${said.text}` : avatar.name + away;
+      const text = isolated(
+        said
+          ? [named(avatar.name), ": ", named(said.text)]
+          : [named(avatar.name), avatar.away ? ` · ${words.people.away}` : ""],
+      );
       const [x, y] = at(avatar);
       const width = pen.measureText(text).width + 2 * PADDING_PX * pixel;
       const box = { x, y: y - ABOVE_PX * pixel, width, height: (FONT_PX + 6) * pixel };

@@ -1,12 +1,15 @@
 /** Carries out what this person wants of others: find, follow, greet, mute, report. */
 
+import type { Wording } from "../language/phrase";
+import { words } from "../language/words";
 import { Gesture } from "../net/codes";
 import type { ClientMessage, EntityInfo } from "../net/messages";
 import type { Place } from "../render/picking";
 import { byId } from "../ui/dom";
 import { PeopleList } from "../ui/people";
 import { PersonPanel, type SaidLine } from "../ui/person";
-import { whereabouts } from "../ui/whereabouts";
+import { whereIs } from "../ui/whereabouts";
+import { write } from "../ui/writing";
 import type { Avatar, World } from "../world/world";
 import { Following } from "./following";
 import { Mutes } from "./mutes";
@@ -48,7 +51,9 @@ export class Others {
       },
       (id) => {
         this.bar.hidden = id === null;
-        if (id !== null) this.whom.textContent = `You follow ${company.nameOf(id)}.`;
+        if (id === null) return;
+        const name = company.nameOf(id);
+        write(this.whom, () => words.following.whom(name));
       },
     );
     byId("following-end", HTMLButtonElement).addEventListener("click", () => {
@@ -152,8 +157,8 @@ export class Others {
   }
 
   /** The server has taken a report, or says why not. */
-  tell(text: string): void {
-    this.card.tell(text);
+  tell(wording: () => Wording): void {
+    this.card.tell(wording);
   }
 
   frame(world: World, nowMs: number): void {
@@ -165,7 +170,8 @@ export class Others {
     this.list.update(world.avatars, chosenId);
     const { id } = this.card;
     const other = id === null ? undefined : world.avatars.get(id);
-    if (!other || !world.own) return;
-    this.card.show(whereabouts(other, world.own.pose, cameraYaw), this.following.id === id);
+    const here = world.own?.pose;
+    if (!other || !here) return;
+    this.card.show(() => whereIs(other, here, cameraYaw), this.following.id === id);
   }
 }

@@ -1,5 +1,7 @@
 /** One visit: it joins, passes messages to the world and the page, and draws the frames. */
 
+import { partsOf, type Wording } from "../language/phrase";
+import { words } from "../language/words";
 import { unpackBlock } from "../net/codec";
 import { unpackSteps } from "../net/steps";
 import { fetchTriangles } from "../net/triangles";
@@ -14,7 +16,15 @@ import { NoticeBanner } from "../ui/notices";
 import { Panel } from "../ui/panels";
 import { PaceBanner } from "../ui/pace";
 import { PlanPanel } from "../ui/plan";
-import { arrivalIn, faultOf, greetingOf, noticeOf } from "../ui/sentences";
+import {
+  arrivalIn,
+  endingOf,
+  faultOf,
+  greetingOf,
+  noticeOf,
+  remarkOf,
+  type Saying,
+} from "../ui/sentences";
 import { StatusChip } from "../ui/status";
 import { surroundings } from "../ui/whereabouts";
 import { World } from "../world/world";
@@ -193,7 +203,7 @@ export class Session {
     this.seats.forget();
     this.others.begin();
     this.links.end();
-    this.join.open("You have left. Come in again whenever you like.");
+    this.join.open(() => words.door.left);
   }
 
   private async comeIn(name: string, password: string): Promise<void> {
@@ -220,10 +230,10 @@ export class Session {
       this.manners.begin(this.welcome);
       this.looks.begun(this.welcome);
     }
-    if (state.phase === "reconnecting") this.join.wait(state.text);
+    if (state.phase === "reconnecting") this.join.wait(() => endingOf(state.ending));
     if (state.phase === "refused") {
       this.notices.hide();
-      this.join.open(state.text);
+      this.join.open(() => endingOf(state.ending));
     }
   }
 
@@ -283,7 +293,7 @@ export class Session {
           this.others.stopFollowing();
         }
         this.chat.note(faultOf(message));
-        this.others.tell(faultOf(message));
+        this.others.tell(() => faultOf(message));
         break;
       case "notice":
         if (message.notice === "goal_moved") this.walking.goalMoved(message.arguments);
@@ -311,15 +321,17 @@ export class Session {
 
   /** A notice goes into the chat, and one of moderators into a banner too. */
   private notice(message: Extract<ServerMessage, { type: "notice" }>): void {
-    const saying = noticeOf(message);
-    if (!saying) {
-      this.chat.note(message.text);
+    const first = noticeOf(message);
+    if (!first) {
+      this.chat.note(remarkOf(message));
       return;
     }
-    this.chat.note(`${saying.head} ${saying.words}`);
+    const saying = (): Saying => noticeOf(message) ?? first;
+    const told = (): Wording => [...partsOf(saying().head), " ", ...partsOf(saying().words)];
+    this.chat.note(told());
     const { seconds, x, y, z } = message.arguments;
-    if (message.notice === "report_taken") this.others.tell(`${saying.head} ${saying.words}`);
-    else if (message.notice === "muted") this.notices.muted(saying.words, Number(seconds));
+    if (message.notice === "report_taken") this.others.tell(told);
+    else if (message.notice === "muted") this.notices.muted(() => saying().words, Number(seconds));
     else this.notices.show(saying, ["warned", "walked_out"].includes(message.notice));
     if (typeof x === "number" && typeof y === "number" && typeof z === "number") {
       this.walking.leadTo({ x, y, z });
@@ -348,7 +360,7 @@ export class Session {
       this.view.enter(world, triangles);
       this.minimap.show(world.scene, triangles);
     } catch (error) {
-      this.chat.note(`The building cannot be shown: ${String(error)}.`);
+      this.chat.note(words.chat.noBuilding(String(error)));
     }
   }
 

@@ -13,6 +13,7 @@ import { Plans } from "../render/plans";
 import { type Choice, QualityControl } from "../render/quality";
 import { Renderer } from "../render/renderer";
 import { buildTown, type Town } from "../render/town";
+import { words } from "../language/words";
 import { STOREYS_APART_M } from "../world/heights";
 import type { Triangles } from "../world/mesh";
 import type { Avatar, World } from "../world/world";
@@ -48,7 +49,7 @@ export class View implements Picture {
     );
     this.camera = new FollowCamera(this.renderer.camera, calm);
     this.marks = new Marks(calm);
-    this.labels = new Labels(labelLayer);
+    this.labels = new Labels(labelLayer, () => words.people.away);
     this.picking = new Picking(this.renderer.camera);
     this.control = new QualityControl(choice, this.software);
     this.renderer.scene.add(

@@ -1,44 +1,54 @@
-/** The meaning of a connection's end: a sentence for the person, and whether to connect again. */
+/** The meaning of a connection's end: its cause, what the server says of it, and whether to retry. */
 
 import { CloseCode } from "./codes";
+import type { Stated } from "./stated";
 
-export interface Closing {
-  text: string;
+interface Meaning {
+  cause: EndingCause;
   retry: boolean;
 }
 
-const CLOSINGS = new Map<number, Closing>([
-  [CloseCode.NORMAL, { text: "The server ended the connection.", retry: true }],
-  [CloseCode.GOING_AWAY, { text: "The server is going down for a moment.", retry: true }],
-  [CloseCode.TOO_LARGE, { text: "This page sent a message that is too large.", retry: true }],
-  [CloseCode.BUSY, { text: "The place does not answer just now.", retry: true }],
-  [
-    CloseCode.UNSUPPORTED_VERSION,
-    { text: "The server speaks another version. Please reload this page.", retry: false },
-  ],
-  [CloseCode.MALFORMED, { text: "The server could not read a message of ours.", retry: true }],
-  [CloseCode.INVALID, { text: "The server refused what this page sent.", retry: false }],
-  [CloseCode.FLOODING, { text: "Too many messages in too short a time.", retry: true }],
-  [CloseCode.HELLO_EXPECTED, { text: "The server did not get our greeting.", retry: true }],
-  [CloseCode.HELLO_TIMEOUT, { text: "Our greeting came too late.", retry: true }],
-  [CloseCode.SERVER_FULL, { text: "The place is full. Please try again later.", retry: false }],
-  [CloseCode.TOO_SLOW, { text: "This connection is too slow to follow the world.", retry: true }],
-  [
-    CloseCode.REPLACED,
-    { text: "Your avatar went on in another window. This one is at rest.", retry: false },
-  ],
-  [CloseCode.SILENT, { text: "Nothing came from this page for a while.", retry: true }],
-  [CloseCode.NAME_RESERVED, { text: "That name cannot be had here.", retry: false }],
-  [CloseCode.ADMISSION_NEEDED, { text: "Not everybody can come in here.", retry: false }],
-  [CloseCode.PASSWORD_NEEDED, { text: "Not everybody can come in here.", retry: false }],
-  [CloseCode.ADMISSION_REFUSED, { text: "You were not let in.", retry: false }],
-  [CloseCode.BANNED, { text: "You cannot come in here.", retry: false }],
-  [CloseCode.KICKED, { text: "An operator has asked you to leave.", retry: false }],
-]);
+export interface Ending extends Meaning {
+  /** The words of the server before it closed, if any. */
+  stated: Stated | null;
+}
 
-/** `stated` is what the server said before it closed (an error or a bye), if anything. */
-export function closing(code: number, stated: string | null): Closing {
-  const known = CLOSINGS.get(code) ?? { text: "The connection was lost.", retry: true };
-  if (stated === known.text) return known;
-  return known.retry || stated === null ? known : { ...known, text: `${known.text} (${stated})` };
+const MEANINGS = {
+  [CloseCode.NORMAL]: { cause: "normal", retry: true },
+  [CloseCode.GOING_AWAY]: { cause: "goingAway", retry: true },
+  [CloseCode.TOO_LARGE]: { cause: "tooLarge", retry: true },
+  [CloseCode.BUSY]: { cause: "busy", retry: true },
+  [CloseCode.UNSUPPORTED_VERSION]: { cause: "unsupportedVersion", retry: false },
+  [CloseCode.MALFORMED]: { cause: "malformed", retry: true },
+  [CloseCode.INVALID]: { cause: "invalid", retry: false },
+  [CloseCode.FLOODING]: { cause: "flooding", retry: true },
+  [CloseCode.HELLO_EXPECTED]: { cause: "helloExpected", retry: true },
+  [CloseCode.HELLO_TIMEOUT]: { cause: "helloTimeout", retry: true },
+  [CloseCode.SERVER_FULL]: { cause: "serverFull", retry: false },
+  [CloseCode.TOO_SLOW]: { cause: "tooSlow", retry: true },
+  [CloseCode.REPLACED]: { cause: "replaced", retry: false },
+  [CloseCode.SILENT]: { cause: "silent", retry: true },
+  [CloseCode.NAME_RESERVED]: { cause: "nameReserved", retry: false },
+  [CloseCode.ADMISSION_NEEDED]: { cause: "admissionNeeded", retry: false },
+  [CloseCode.PASSWORD_NEEDED]: { cause: "passwordNeeded", retry: false },
+  [CloseCode.ADMISSION_REFUSED]: { cause: "admissionRefused", retry: false },
+  [CloseCode.BANNED]: { cause: "banned", retry: false },
+  [CloseCode.KICKED]: { cause: "kicked", retry: false },
+} as const;
+
+/** What ends a connection: a close code, or what this page makes of its silence. */
+export type EndingCause =
+  | (typeof MEANINGS)[keyof typeof MEANINGS]["cause"]
+  | "lost"
+  | "serverSilent"
+  | "noAnswer"
+  | "unreadable";
+
+const BY_CODE: ReadonlyMap<number, Meaning> = new Map(
+  Object.entries(MEANINGS).map(([code, meaning]) => [Number(code), meaning]),
+);
+
+/** The end of a connection that was closed with a code. */
+export function closing(code: number, stated: Stated | null): Ending {
+  return { ...(BY_CODE.get(code) ?? { cause: "lost", retry: true }), stated };
 }

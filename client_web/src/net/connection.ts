@@ -2,19 +2,19 @@
 
 import { backoffMs } from "./backoff";
 import { ServerClock } from "./clock";
-import { closing, type Closing } from "./closing";
+import { closing, type Ending } from "./closing";
 import { CloseCode, OLDEST_VERSION, VERSION } from "./codes";
 import { decodeServer, encodeClient, isSpoken } from "./codec";
 import { WireError } from "./errors";
 import type { Admission, Arguments, ClientMessage, Look, ServerMessage, Welcome } from "./messages";
-import { stated } from "./stated";
+import { stated, type Stated } from "./stated";
 
 export type ConnectionState =
   | { phase: "idle" }
   | { phase: "connecting" }
   | { phase: "live" }
-  | { phase: "reconnecting"; text: string; attempt: number }
-  | { phase: "refused"; text: string };
+  | { phase: "reconnecting"; ending: Ending; attempt: number }
+  | { phase: "refused"; ending: Ending };
 
 /** The part of a WebSocket that is used here. */
 export type Socket = Pick<
@@ -56,7 +56,7 @@ export class Connection {
   private socket: Socket | null = null;
   private greeting: Greeting | null = null;
   private attempt = 0;
-  private stated: string | null = null;
+  private stated: Stated | null = null;
   /** The version that the next hello asks for: an older one once the newest was refused. */
   private version = VERSION;
   private heardMs = 0;
@@ -155,7 +155,8 @@ export class Connection {
       message = decodeServer(data);
     } catch (error) {
       if (!(error instanceof WireError)) throw error;
-      this.lost({ text: `The server sent something unreadable: ${error.message}.`, retry: true });
+      const unreadable = { words: error.message };
+      this.lost({ cause: "unreadable", stated: unreadable, retry: true });
       return;
     }
     if (message === null) return;
@@ -188,10 +189,10 @@ export class Connection {
     const silentMs = performance.now() - this.heardMs;
     if (this.state_.phase === "live") {
       const longestMs = this.doubted ? DOUBTED_SILENCE_MS : SILENCE_MS;
-      if (silentMs > longestMs) this.lost({ text: "The server fell silent.", retry: true });
+      if (silentMs > longestMs) this.lost({ cause: "serverSilent", stated: null, retry: true });
       else this.ping();
     } else if (silentMs > GREETING_MS) {
-      this.lost({ text: "The server does not answer.", retry: true });
+      this.lost({ cause: "noAnswer", stated: null, retry: true });
     }
   }
 
@@ -207,10 +208,10 @@ export class Connection {
     this.clock.add(sentS, nowS(), serverTimeS);
   }
 
-  private lost({ text, retry }: Closing): void {
+  private lost(ending: Ending): void {
     this.drop();
-    if (!retry) {
-      this.change({ phase: "refused", text });
+    if (!ending.retry) {
+      this.change({ phase: "refused", ending });
       return;
     }
     const attempt = this.attempt++;
@@ -220,7 +221,7 @@ export class Connection {
       },
       backoffMs(attempt, this.random),
     );
-    this.change({ phase: "reconnecting", text, attempt });
+    this.change({ phase: "reconnecting", ending, attempt });
   }
 
   /** Without a code the server keeps the avatar for a while. */

@@ -1,17 +1,20 @@
-/** The reason that the server states before it ends a connection, in words for the person. */
+/** The reason that the server states before it ends a connection. */
 
 import type { ServerMessage } from "./messages";
 
-type Ending = Extract<ServerMessage, { type: "error" | "bye" }>;
+type Last = Extract<ServerMessage, { type: "error" | "bye" }>;
 
-/** `locale` is that of the browser unless a test says otherwise. */
-export function stated(message: Ending, locale?: string): string {
+export interface Stated {
+  /** The moderator's own words, else the server's. */
+  words: string;
+  /** The end of a ban, seconds since 1970; null for one without an end, undefined without a ban. */
+  bannedUntilS?: number | null;
+}
+
+export function stated(message: Last): Stated {
   const code = message.type === "error" ? message.error : message.reason;
   const { text, until_s: untilS } = message.arguments;
   const words = typeof text === "string" ? text : message.text;
-  if (code !== "banned") return words;
-  if (typeof untilS !== "number") return `${words} No end is set.`;
-  const end = new Date(untilS * 1000);
-  const when = end.toLocaleString(locale, { dateStyle: "medium", timeStyle: "short" });
-  return `${words} You may come back after ${when}.`;
+  if (code !== "banned") return { words };
+  return { words, bannedUntilS: typeof untilS === "number" ? untilS : null };
 }

@@ -5,11 +5,11 @@ import type { Look } from "../net/messages";
 import { unlikeness } from "./likeness";
 import { pick, scatter } from "./palette";
 
-/** Something that can be chosen: its name, for people to read, and how it looks. */
+/** Something that can be chosen: its name, by which people are told of it in their language, and how it looks. */
 export type Choice<T> = readonly [name: string, looks: T];
 
 /** The number of a choice on the wire is its place here, from 1 on. */
-export const SHIRTS: readonly Choice<string>[] = [
+export const SHIRTS = [
   ["red", "#c8413b"],
   ["blue", "#2f6fb5"],
   ["amber", "#e0a031"],
@@ -22,19 +22,19 @@ export const SHIRTS: readonly Choice<string>[] = [
   ["brown", "#8a5a3b"],
   ["black", "#1f2124"],
   ["lime", "#a8bf3f"],
-];
-export const TROUSERS: readonly Choice<string>[] = [
+] as const satisfies readonly Choice<string>[];
+export const TROUSERS = [
   ["ink", "#2c3440"],
-  ["grey-blue", "#4a5568"],
+  ["greyBlue", "#4a5568"],
   ["khaki", "#6b5b4a"],
   ["navy", "#26324d"],
   ["grey", "#55524d"],
   ["stone", "#7b7264"],
   ["rust", "#8c4a32"],
   ["cream", "#d8cdb8"],
-];
-export const HAIR_COLOURS: readonly Choice<string>[] = [
-  ["dark brown", "#2b1d14"],
+] as const satisfies readonly Choice<string>[];
+export const HAIR_COLOURS = [
+  ["darkBrown", "#2b1d14"],
   ["brown", "#4f3421"],
   ["chestnut", "#8a5a2b"],
   ["blond", "#c79a55"],
@@ -42,18 +42,18 @@ export const HAIR_COLOURS: readonly Choice<string>[] = [
   ["black", "#1a1a1f"],
   ["red", "#a3481f"],
   ["white", "#dcd8d2"],
-];
+] as const satisfies readonly Choice<string>[];
 /** From light to dark. */
-export const SKINS: readonly Choice<string>[] = [
-  ["1, the lightest", "#f8dfc8"],
-  ["2", "#f1c9a5"],
-  ["3", "#e0ac80"],
-  ["4", "#c68a5e"],
-  ["5", "#b07a50"],
-  ["6", "#9a643f"],
-  ["7", "#6f452b"],
-  ["8, the darkest", "#4a2d1e"],
-];
+export const SKINS = [
+  ["skin1", "#f8dfc8"],
+  ["skin2", "#f1c9a5"],
+  ["skin3", "#e0ac80"],
+  ["skin4", "#c68a5e"],
+  ["skin5", "#b07a50"],
+  ["skin6", "#9a643f"],
+  ["skin7", "#6f452b"],
+  ["skin8", "#4a2d1e"],
+] as const satisfies readonly Choice<string>[];
 /** The parts of figures; null is none at all. */
 export const HAIRDOS = [
   ["short", "short"],

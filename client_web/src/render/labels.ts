@@ -21,7 +21,8 @@ interface Label {
   name: HTMLElement;
   spoken: HTMLElement;
   spokenUntilMs: number;
-  away: boolean;
+  /** The word that says that its person is away; empty while they are there. */
+  away: string;
   /** Pixels as it is shown now; null if it has to be measured anew. */
   size: { width: number; height: number } | null;
 }
@@ -31,7 +32,11 @@ export class Labels {
   private readonly room = new LabelRoom();
   private readonly at = new Vector3();
 
-  constructor(private readonly layer: HTMLElement) {}
+  /** `away` is called for the word that marks those who are away. */
+  constructor(
+    private readonly layer: HTMLElement,
+    private readonly away: () => string,
+  ) {}
 
   /** Show what somebody said above the head for a while. */
   say(avatar: Avatar, text: string): void {
@@ -65,7 +70,7 @@ export class Labels {
       this.head(avatar).project(camera);
       if (this.at.z > 1 || Math.abs(this.at.x) > 1.1 || Math.abs(this.at.y) > 1.1) continue;
       const label = this.labelOf(avatar);
-      markAway(label, avatar);
+      markAway(label, avatar, avatar.away ? this.away() : "");
       const x = ((this.at.x + 1) / 2) * width;
       const y = ((1 - this.at.y) / 2) * height;
       if (!this.room.take({ x, y, ...this.sizeOf(label, now) })) continue;
@@ -121,22 +126,30 @@ export class Labels {
     element.className = `label ${avatar.kind}${avatar.own ? " own" : ""}`;
     const spoken = document.createElement("span");
     spoken.className = "spoken";
+    spoken.dir = "auto";
     spoken.hidden = true;
     const name = document.createElement("span");
     name.className = "name";
-    name.textContent = avatar.name;
+    name.append(called(avatar));
     element.append(spoken, name);
     this.layer.append(element);
-    const label = { element, name, spoken, spokenUntilMs: 0, away: false, size: null };
+    const label = { element, name, spoken, spokenUntilMs: 0, away: "", size: null };
     this.labels.set(avatar.id, label);
     return label;
   }
 }
 
-function markAway(label: Label, { name, away }: Avatar): void {
+function markAway(label: Label, avatar: Avatar, away: string): void {
   if (label.away === away) return;
   label.away = away;
-  label.name.textContent = away ? `${name} · away` : name;
-  label.element.classList.toggle("away", away);
+  label.name.replaceChildren(called(avatar), away === "" ? "" : ` · ${away}`);
+  label.element.classList.toggle("away", avatar.away);
   label.size = null;
+}
+
+/** A name in the direction of its own script. */
+function called({ name }: Avatar): HTMLElement {
+  const element = document.createElement("bdi");
+  element.textContent = name;
+  return element;
 }

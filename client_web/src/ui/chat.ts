@@ -1,11 +1,14 @@
 /** The chat: a log, a line to write in, and on small screens a button that opens both. */
 
+import type { Wording } from "../language/phrase";
+import { words } from "../language/words";
 import { MAX_CHAT_CHARS } from "../net/codes";
 import type { ChatMessage } from "../net/messages";
 import { byId, element } from "./dom";
 import { withLinks } from "./links";
 import { tooLong } from "./lengths";
 import type { SaidLine } from "./person";
+import { nodesOf, write } from "./writing";
 
 const KEPT_LINES = 80;
 /** The number of lines of one person that can be chosen for a report. */
@@ -29,7 +32,7 @@ export class ChatPanel {
       const text = this.line.value.trim();
       if (this.complain()) return;
       if (text !== "" && !say(text)) {
-        this.note("Not sent: there is no connection at the moment.");
+        this.note(words.noConnection);
         return;
       }
       this.line.value = "";
@@ -50,9 +53,9 @@ export class ChatPanel {
   }
 
   said({ id, name, text, line }: ChatMessage, own: boolean): void {
-    const who = element("b", own ? { class: "own" } : {}, name);
-    const words = element("span", {}, ...withLinks(text));
-    this.add(element("li", { "data-line": String(line), "data-id": String(id) }, who, " ", words));
+    const who = element("b", { class: own ? "own" : false, dir: "auto" }, name);
+    const said = element("span", { dir: "auto" }, ...withLinks(text));
+    this.add(element("li", { "data-line": String(line), "data-id": String(id) }, who, " ", said));
     if (!this.panel.classList.contains("open")) this.toggle.classList.add("unread");
   }
 
@@ -74,8 +77,8 @@ export class ChatPanel {
   }
 
   /** A line from the server or from this page itself. */
-  note(text: string): void {
-    this.add(element("li", { class: "note" }, text));
+  note(wording: Wording): void {
+    this.add(element("li", { class: "note" }, ...nodesOf(wording)));
   }
 
   private enter(): void {
@@ -93,10 +96,11 @@ export class ChatPanel {
 
   /** Say that a line is too long to be sent; returns whether it is. */
   private complain(): boolean {
-    const text = tooLong(this.line.value.trim(), MAX_CHAT_CHARS);
-    this.fault.hidden = text === null;
-    this.fault.textContent = text;
-    return text !== null;
+    const complaint = (): Wording | null => tooLong(this.line.value.trim(), MAX_CHAT_CHARS);
+    const isTooLong = complaint() !== null;
+    this.fault.hidden = !isTooLong;
+    write(this.fault, () => complaint() ?? "");
+    return isTooLong;
   }
 
   private add(item: HTMLElement): void {

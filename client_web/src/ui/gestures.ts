@@ -1,18 +1,10 @@
 /** The menu of gestures, and the captions that tell in words what gestures show. */
 
+import { words } from "../language/words";
 import type { GestureName } from "../net/messages";
 import { byId, element } from "./dom";
 import { Panel } from "./panels";
-
-/** How each is called, and told of others and of oneself. */
-const WORDS: Record<GestureName, readonly [name: string, they: string, you: string]> = {
-  wave: ["Wave", "waves", "wave"],
-  nod: ["Nod", "nods", "nod"],
-  point: ["Point", "points", "point"],
-  clap: ["Clap", "claps", "clap"],
-  dance: ["Dance", "dances", "dance"],
-  raise_hand: ["Raise hand", "raises a hand", "raise a hand"],
-};
+import { write } from "./writing";
 
 export class GestureMenu {
   private readonly toggle = byId("gestures-toggle", HTMLButtonElement);
@@ -23,12 +15,10 @@ export class GestureMenu {
   /** `make` is called with the number of the gesture that is chosen. */
   constructor(gestures: ReadonlyMap<number, GestureName>, make: (gesture: number) => void) {
     for (const [number, name] of gestures) {
-      const button = element(
-        "button",
-        { type: "button" },
-        element("kbd", { "aria-hidden": "true" }, String(number)),
-        ` ${WORDS[name][0]}`,
-      );
+      const label = element("span");
+      write(label, () => words.gestures.names[name]);
+      const digit = element("kbd", { "aria-hidden": "true" }, String(number));
+      const button = element("button", { type: "button" }, digit, " ", label);
       button.addEventListener("click", () => {
         make(number);
       });
@@ -51,8 +41,8 @@ export class GestureMenu {
 
   /** Tell those who do not see it that somebody makes a gesture; returns the words for a label. */
   tell(name: string, own: boolean, gesture: GestureName): string {
-    const [, they, you] = WORDS[gesture];
-    this.captions.textContent = own ? `You ${you}.` : `${name} ${they}.`;
-    return they;
+    const { labels, they, you } = words.gestures;
+    write(this.captions, () => (own ? you[gesture] : they[gesture](name)));
+    return labels[gesture];
   }
 }

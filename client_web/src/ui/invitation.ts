@@ -1,6 +1,8 @@
 /** The question whether to go where a link leads: to a place, or after somebody. */
 
+import type { Wording } from "../language/phrase";
 import { byId } from "./dom";
+import { write } from "./writing";
 
 export class Invitation {
   private readonly bar = byId("invitation", HTMLElement);
@@ -19,9 +21,9 @@ export class Invitation {
   }
 
   /** Ask; `go` names what `accept` does. */
-  open(text: string, go: string, accept: () => void): void {
-    this.text.textContent = text;
-    this.go.textContent = go;
+  open(text: () => Wording, go: () => Wording, accept: () => void): void {
+    write(this.text, text);
+    write(this.go, go);
     this.accept = accept;
     this.bar.hidden = false;
   }

@@ -1,8 +1,11 @@
 /** The dialog before one joins: it asks for a name, and says why one is not in the world. */
 
 import { MAX_NAME_CHARS } from "../net/codes";
+import type { Wording } from "../language/phrase";
+import { words } from "../language/words";
 import { byId } from "./dom";
 import { tooLong } from "./lengths";
+import { write } from "./writing";
 
 const NAME_KEY = "esplanade.name";
 
@@ -24,9 +27,8 @@ export class JoinDialog {
     this.form.addEventListener("submit", (event) => {
       event.preventDefault();
       const name = this.name.value.trim();
-      const fault = this.faultOf(name);
-      this.reason.textContent = fault;
-      if (fault !== "") {
+      this.tell(() => this.faultOf(name));
+      if (this.faultOf(name) !== "") {
         this.name.select();
         return;
       }
@@ -43,9 +45,9 @@ export class JoinDialog {
     });
   }
 
-  open(reason = ""): void {
+  open(reason: () => Wording = () => ""): void {
     this.busy(false);
-    this.reason.textContent = reason;
+    this.tell(reason);
     this.wanted = true;
     if (!this.dialog.open) this.dialog.showModal();
     if (this.secret.hidden) this.name.select();
@@ -60,27 +62,31 @@ export class JoinDialog {
 
   close(): void {
     this.busy(false);
-    this.reason.textContent = "";
+    this.tell(() => "");
     this.password.value = "";
     this.wanted = false;
     this.dialog.close();
   }
 
   /** Say why joining takes long. */
-  wait(reason: string): void {
-    this.reason.textContent = `${reason} Trying again…`;
+  wait(reason: () => Wording): void {
+    this.tell(() => words.door.tryingAgain(reason()));
   }
 
   /** Show that the server is being asked. */
   busy(busy: boolean): void {
     this.button.disabled = busy;
-    this.button.textContent = busy ? "Coming in…" : "Come in";
+    write(this.button, () => (busy ? words.door.comingIn : words.door.comeIn));
+  }
+
+  private tell(reason: () => Wording): void {
+    write(this.reason, reason);
   }
 
   /** The fault of a name, or that the password is missing; an empty text if all is well. */
-  private faultOf(name: string): string {
-    if (name === "") return "Please give a name that one can see.";
-    if (this.password.required && this.password.value === "") return "Please give the password.";
+  private faultOf(name: string): Wording {
+    if (name === "") return words.door.noName;
+    if (this.password.required && this.password.value === "") return words.door.noPassword;
     return tooLong(name, MAX_NAME_CHARS) ?? "";
   }
 }

@@ -1,13 +1,15 @@
 /** The editor of a look: a row of choices for each part, and the stature. */
 
+import { words } from "../language/words";
 import type { Look } from "../net/messages";
 import { byId, element } from "./dom";
+import { write, writeAttribute } from "./writing";
 
 /** A part of a look that is chosen among a few: what it is called, and what there is. */
 export interface LookPart {
-  readonly title: string;
+  readonly title: () => string;
   /** Each with its colour; null where the name alone says what it is. */
-  readonly choices: readonly (readonly [name: string, colour: string | null])[];
+  readonly choices: readonly (readonly [name: () => string, colour: string | null])[];
 }
 
 export class LookEditor {
@@ -58,17 +60,23 @@ export class LookEditor {
   }
 
   private say(): void {
-    this.said.textContent = `${this.stature.value} cm`;
+    write(this.said, () => words.look.centimetres(Number(this.stature.value)));
   }
 
   private group({ title, choices }: LookPart, name: string): HTMLInputElement[] {
-    const set = element("fieldset", {}, element("legend", {}, title));
+    const legend = element("legend");
+    write(legend, title);
+    const set = element("fieldset", {}, legend);
     const radios = choices.map(([choice, colour], i) => {
       const radio = element("input", { type: "radio", name, value: String(i + 1) });
-      const label = element("label", { title: choice }, radio);
-      if (colour === null) label.append(element("span", { class: "word" }, choice));
-      else {
-        radio.setAttribute("aria-label", choice);
+      const label = element("label", {}, radio);
+      writeAttribute(label, "title", choice);
+      if (colour === null) {
+        const word = element("span", { class: "word" });
+        write(word, choice);
+        label.append(word);
+      } else {
+        writeAttribute(radio, "aria-label", choice);
         const swatch = element("span", { class: "swatch" });
         // The page's security policy forbids styles in attributes, and allows this.
         swatch.style.backgroundColor = colour;

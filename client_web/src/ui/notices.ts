@@ -1,7 +1,10 @@
 /** The banner of what moderators tell this person: an announcement, a mute, a warning. */
 
+import type { Wording } from "../language/phrase";
+import { words } from "../language/words";
 import { byId } from "./dom";
-import { type Saying, spanOf } from "./sentences";
+import type { Saying } from "./sentences";
+import { write } from "./writing";
 
 /** A notice that needs no answer goes by itself after this time. */
 const SHOWN_MS = 20_000;
@@ -20,10 +23,10 @@ export class NoticeBanner {
   }
 
   /** Show something until it is closed; `lasting` notices do not go by themselves. */
-  show({ head, words }: Saying, lasting: boolean): void {
+  show(saying: () => Saying, lasting: boolean): void {
     this.hide();
-    this.head.textContent = head;
-    this.words.textContent = words;
+    write(this.head, () => saying().head);
+    write(this.words, () => saying().words);
     this.banner.hidden = false;
     if (!lasting) {
       this.timer = window.setTimeout(() => {
@@ -33,13 +36,13 @@ export class NoticeBanner {
   }
 
   /** Show for how long this person is muted yet; it goes when that is over. */
-  muted(words: string, seconds: number): void {
+  muted(said: () => Wording, seconds: number): void {
     const untilMs = performance.now() + 1000 * seconds;
-    this.show({ head: "", words }, true);
+    this.show(() => ({ head: "", words: said() }), true);
     const count = (): void => {
       const leftS = (untilMs - performance.now()) / 1000;
       if (leftS <= 0) this.hide();
-      else this.head.textContent = `You are muted for ${spanOf(leftS)} more.`;
+      else write(this.head, () => words.notices.mutedYet(leftS));
     };
     count();
     this.timer = window.setInterval(count, COUNT_MS);

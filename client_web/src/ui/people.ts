@@ -1,15 +1,17 @@
 /** The list of people and actors in view, and how many the whole world holds. */
 
+import { words } from "../language/words";
 import { byName } from "../world/ordering";
 import type { Avatar } from "../world/world";
 import { byId, element } from "./dom";
+import { write } from "./writing";
 
 export class PeopleList {
   private readonly list = byId("people-list", HTMLElement);
   private readonly find = byId("people-find", HTMLInputElement);
   private readonly total = byId("people-total", HTMLElement);
   private readonly count = byId("people-count", HTMLElement);
-  private readonly groups = { person: group("People"), actor: group("Actors") };
+  private readonly groups = { person: group("people"), actor: group("actors") };
   private shown = "";
 
   constructor(
@@ -30,7 +32,7 @@ export class PeopleList {
   }
 
   census(people: number, actors: number): void {
-    this.total.textContent = `${plural(people, "person", "people")} and ${plural(actors, "actor", "actors")} in the world`;
+    write(this.total, () => words.people.inWorld(people, actors));
   }
 
   /** Costs little when nobody came or went. */
@@ -62,21 +64,24 @@ export class PeopleList {
       const button = element(
         "button",
         { type: "button", "data-id": String(id), "aria-pressed": String(id === chosenId) },
-        element("span", {}, name),
-        element("small", {}, "show plan"),
+        called(name),
+        remark(() => words.people.showPlan),
       );
       button.addEventListener("click", () => {
         this.choose(id);
       });
       row.append(button);
     } else if (own) {
-      row.append(element("span", {}, name), element("small", {}, "you"));
+      row.append(
+        called(name),
+        remark(() => words.people.you),
+      );
     } else {
       const button = element(
         "button",
         { type: "button", "data-id": String(id), "aria-pressed": String(id === this.openedId()) },
-        element("span", {}, name),
-        element("small", {}, [away ? "away" : "", muted ? "muted" : ""].filter(Boolean).join(", ")),
+        called(name),
+        remark(() => stateOf(away, muted)),
       );
       button.addEventListener("click", () => {
         this.open(id, name);
@@ -94,10 +99,12 @@ interface Group {
 }
 
 /** A part of the list that one can close, so that it hides no other. */
-function group(title: string): Group {
+function group(title: "people" | "actors"): Group {
   const count = element("span", { class: "count" });
   const rows = element("ul");
-  const summary = element("summary", {}, `${title} `, count);
+  const label = element("span");
+  write(label, () => words.people[title]);
+  const summary = element("summary", {}, label, " ", count);
   return { details: element("details", { open: true }, summary, rows), count, rows };
 }
 
@@ -106,6 +113,17 @@ function byPlaceInList(a: Avatar, b: Avatar): number {
   return Number(b.own) - Number(a.own) || byName(a.name, b.name);
 }
 
-function plural(count: number, one: string, many: string): string {
-  return `${count} ${count === 1 ? one : many}`;
+function called(name: string): HTMLElement {
+  return element("span", { dir: "auto" }, name);
+}
+
+function remark(source: () => string): HTMLElement {
+  const made = element("small");
+  write(made, source);
+  return made;
+}
+
+function stateOf(away: boolean, muted: boolean): string {
+  if (away && muted) return words.people.awayAndMuted;
+  return away ? words.people.away : muted ? words.people.muted : "";
 }

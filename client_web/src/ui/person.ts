@@ -1,8 +1,11 @@
 /** The card of another person: find, follow and greet them, mute or report them. */
 
+import { name as named, type Wording } from "../language/phrase";
+import { words } from "../language/words";
 import { MAX_CHAT_CHARS } from "../net/codes";
 import { byId, element } from "./dom";
 import { Panel } from "./panels";
+import { write } from "./writing";
 
 export interface SaidLine {
   line: number;
@@ -81,8 +84,8 @@ export class PersonPanel {
   }
 
   /** Say where somebody is, in words, and whether they are followed. */
-  show(where: string, followed: boolean): void {
-    if (this.where.textContent !== where) this.where.textContent = where;
+  show(where: () => Wording, followed: boolean): void {
+    write(this.where, where);
     this.follow.setAttribute("aria-pressed", String(followed));
   }
 
@@ -90,16 +93,18 @@ export class PersonPanel {
     Panel.makeRoom();
     this.opener = document.activeElement;
     this.shown = { id, name };
-    this.name.textContent = name;
+    write(this.name, () => [named(name)]);
     this.text.value = "";
     this.text.maxLength = MAX_CHAT_CHARS - this.longestWhy() - 2;
-    this.state.textContent = "";
+    this.tell(() => "");
     this.report.open = false;
     const lines = this.wishes.linesOf(id);
     const options = lines.map(({ line, text }) =>
-      element("option", { value: String(line) }, shortened(text)),
+      element("option", { value: String(line), dir: "auto" }, shortened(text)),
     );
-    this.line.replaceChildren(element("option", { value: "" }, "none of their lines"), ...options);
+    const none = element("option", { value: "" });
+    write(none, () => words.card.noLine);
+    this.line.replaceChildren(none, ...options);
     byId("person-line-label", HTMLElement).hidden = this.line.hidden = lines.length === 0;
     this.update();
     this.panel.hidden = false;
@@ -107,8 +112,8 @@ export class PersonPanel {
   }
 
   /** The server has taken a report, or says why not. */
-  tell(text: string): void {
-    if (!this.panel.hidden) this.state.textContent = text;
+  tell(wording: () => Wording): void {
+    write(this.state, wording);
   }
 
   close(): void {
@@ -119,7 +124,7 @@ export class PersonPanel {
 
   private update(): void {
     const muted = this.shown !== null && this.wishes.isMuted(this.shown.name);
-    this.mute.textContent = muted ? "Unmute" : "Mute for me";
+    write(this.mute, () => (muted ? words.card.unmute : words.card.mute));
     this.mute.setAttribute("aria-pressed", String(muted));
   }
 
@@ -129,7 +134,7 @@ export class PersonPanel {
     const text = more === "" ? this.why.value : `${this.why.value}: ${more}`;
     const line = this.line.value === "" ? null : Number(this.line.value);
     const sent = this.wishes.report(this.shown.id, line, text);
-    this.state.textContent = sent ? "Sending…" : "Not sent: there is no connection at the moment.";
+    this.tell(() => (sent ? words.card.sending : words.noConnection));
     if (sent) this.text.value = "";
   }
 

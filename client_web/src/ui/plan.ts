@@ -1,9 +1,12 @@
 /** The panel of the chosen actor: its behaviour, its goal, its reason, and the tour of a guide. */
 
+import { name as named } from "../language/phrase";
+import { words } from "../language/words";
 import type { PlanTour } from "../net/messages";
 import type { World } from "../world/world";
 import { byId, element } from "./dom";
 import { behaviourOf, followersOf, outlookOf, reasonOf, stopOf } from "./planwords";
+import { write } from "./writing";
 
 export class PlanPanel {
   private readonly title = byId("plan-title", HTMLElement);
@@ -26,44 +29,41 @@ export class PlanPanel {
   /** Show the actor of that name, which the person follows or does not. */
   update(name: string | null, world: World, followed: boolean): void {
     const { plan, avatars, scene } = world;
-    set(this.title, name ?? "No actor chosen");
+    write(this.title, () => (name === null ? words.plan.none : [named(name)]));
     this.follow.hidden = name === null;
     this.show(plan?.tour ?? null, world.ownId, followed);
     if (!plan || name === null) {
-      set(this.behaviour, name === null ? "Click an actor, or choose one under People." : "…");
-      set(this.reason, "");
-      set(this.outlook, "");
+      write(this.behaviour, () => (name === null ? words.plan.choose : words.plan.awaited));
+      write(this.reason, () => "");
+      write(this.outlook, () => "");
       return;
     }
-    set(this.behaviour, behaviourOf(plan, scene.places));
-    set(
-      this.reason,
-      reasonOf(plan, (id) => avatars.get(id)?.name ?? null),
-    );
-    set(this.outlook, outlookOf(plan));
+    write(this.behaviour, () => behaviourOf(plan, scene.places));
+    write(this.reason, () => reasonOf(plan, (id) => avatars.get(id)?.name ?? null));
+    write(this.outlook, () => outlookOf(plan));
   }
 
   private show(tour: PlanTour | null, ownId: number, followed: boolean): void {
-    const [join, leave] = tour ? ["Join the tour", "Leave the tour"] : ["Follow", "Follow no more"];
-    set(this.follow, followed ? leave : join);
+    write(this.follow, () => {
+      const { follow, followNoMore, joinTour, leaveTour } = words.plan;
+      if (followed) return tour ? leaveTour : followNoMore;
+      return tour ? joinTour : follow;
+    });
     this.follow.setAttribute("aria-pressed", String(followed));
     this.tour.hidden = tour === null;
     if (!tour) return;
-    set(this.followers, followersOf(tour, ownId));
+    write(this.followers, () => followersOf(tour, ownId));
     const shown = JSON.stringify([tour.stops, tour.next]);
     if (shown === this.shownStops) return;
     this.shownStops = shown;
     const items = tour.stops.map((_, stop) => {
       const current = stop === tour.next && "step";
-      return element("li", { "aria-current": current }, stopOf(tour, stop));
+      const item = element("li", { "aria-current": current, dir: "auto" });
+      write(item, () => stopOf(tour, stop));
+      return item;
     });
     this.stops.replaceChildren(...items);
     const current = items[tour.next];
     if (current) this.stops.scrollTop = current.offsetTop - this.stops.offsetTop;
   }
-}
-
-/** Write a text only when it changes, so that screen readers do not say the same again. */
-function set(target: HTMLElement, text: string): void {
-  if (target.textContent !== text) target.textContent = text;
 }

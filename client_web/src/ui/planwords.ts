@@ -1,5 +1,8 @@
 /** Words for what an actor does, where it goes, and who holds it. */
 
+import type { Blocker, Outlook } from "../language/arguments";
+import type { Wording } from "../language/phrase";
+import { words } from "../language/words";
 import { Outcome, Reason } from "../net/codes";
 import type { Place, Plan, PlanBlocker, PlanTour, ScenePlace } from "../net/messages";
 
@@ -12,94 +15,93 @@ const SAME_FLOOR_M = 1.5;
 /** A path that ends no further from the goal than this leads all the way. */
 const AT_GOAL_M = 0.6;
 
-const BEHAVIOURS: Record<string, string> = {
-  go_to: "goes to a place",
-  wander: "wanders between places",
-  patrol: "patrols its round",
-  guide: "guides a tour",
-  idle: "has nothing to do",
-};
-
 /** The behaviour of an actor, and the place that it goes to. */
-export function behaviourOf(plan: Plan, places: readonly ScenePlace[]): string {
-  const behaviour = BEHAVIOURS[plan.behaviour] ?? plan.behaviour;
+export function behaviourOf(plan: Plan, places: readonly ScenePlace[]): Wording {
   const place = plan.goal && plan.outcome === null ? placeAt(plan.goal, places) : null;
-  return place === null ? behaviour : `${behaviour}, now to: ${place}`;
+  const { behaviours, unknown } = words.plan;
+  const { behaviour } = plan;
+  return isKnown(behaviour) ? behaviours[behaviour](place) : unknown(behaviour, place);
 }
 
 /** Why an actor does what it does, or how its trip ended, with the name of who holds it. */
-export function reasonOf(plan: Plan, nameOf: NameOf): string {
-  const inTheWay = plan.in_the_way && blockerName(plan.in_the_way, nameOf);
+export function reasonOf(plan: Plan, nameOf: NameOf): Wording {
+  const sentences = words.plan;
+  const inTheWay = blockerOf(plan.in_the_way, nameOf);
   switch (plan.outcome) {
     case Outcome.NEAR:
-      return `is as near to its goal as it gets: ${inTheWay ?? "somebody"} is there`;
+      return sentences.asNear(inTheWay ?? { kind: "somebody" });
     case Outcome.BLOCKED:
-      return `has given up: ${inTheWay ?? "something"} is in its way`;
+      return sentences.blocked(inTheWay ?? { kind: "something" });
     case Outcome.NO_WAY:
-      return "has given up: no way leads to its goal";
+      return sentences.noWay;
   }
-  const blocker = plan.blocker && blockerName(plan.blocker, nameOf);
+  const blocker = blockerOf(plan.blocker, nameOf);
   switch (plan.reason) {
     case Reason.MOVING:
-      return "moving along its path";
+      return sentences.moving;
     case Reason.GIVING_WAY:
-      return `giving way to ${blocker ?? "somebody"}`;
+      return sentences.givingWay(blocker ?? { kind: "somebody" });
     case Reason.WAITING:
-      return blocker === null ? "waiting" : `waiting for ${blocker}`;
+      return blocker === null ? sentences.waiting : sentences.waitingFor(blocker);
     case Reason.REPLANNING:
-      return "looking for another way";
+      return sentences.replanning;
     case Reason.NO_PATH:
-      return "finds no way to its goal";
+      return sentences.noPath;
     case Reason.ARRIVED:
-      return "has arrived";
+      return sentences.arrived;
     default:
-      return "no reason given";
+      return sentences.noReason;
   }
 }
 
 /** How far the path reaches, while the actor follows one, and how many people it minds. */
-export function outlookOf(plan: Plan): string {
-  const people = plan.people.length === 1 ? "1 person near" : `${plan.people.length} people near`;
-  if (plan.outcome !== null || plan.reason === Reason.ARRIVED) return people;
-  const end = plan.path.at(-1);
-  if (!end || plan.path.length < 2) return `no path, ${people}`;
+export function outlookOf(plan: Plan): Wording {
+  return words.plan.outlook(reachOf(plan), plan.people.length);
+}
+
+function reachOf({ outcome, reason, path, goal }: Plan): Outlook {
+  if (outcome !== null || reason === Reason.ARRIVED) return { path: "over" };
+  const end = path.at(-1);
+  if (!end || path.length < 2) return { path: "none" };
   const [x, y, z, seconds] = end;
-  const { goal } = plan;
   const leadsThere =
     goal !== null &&
     Math.hypot(x - goal[0], y - goal[1]) < AT_GOAL_M &&
     Math.abs(z - goal[2]) < SAME_FLOOR_M;
-  return `${leadsThere ? "there in" : "path for"} ${seconds.toFixed(0)} s, ${people}`;
+  return { path: leadsThere ? "toGoal" : "part", seconds };
 }
 
 /** The number of people whom a guide leads, in words, and whether one is among them. */
-export function followersOf({ followers }: PlanTour, ownId: number): string {
+export function followersOf({ followers }: PlanTour, ownId: number): Wording {
   const others = followers.filter((id) => id !== ownId).length;
-  const people = others === 1 ? "1 person" : `${others} people`;
-  if (others < followers.length) {
-    return others === 0 ? "You are on this tour." : `You are on this tour, with ${people} more.`;
-  }
-  return others === 0 ? "Nobody is on this tour yet." : `${people} on this tour.`;
+  return others < followers.length ? words.plan.led(others) : words.plan.others(others);
 }
 
-/** The name of a stop. */
-export function stopOf({ stops }: PlanTour, stop: number): string {
-  return stops[stop] || `Stop ${stop + 1}`;
+/** The name of a stop, as whoever made the scene wrote it. */
+export function stopOf({ stops }: PlanTour, stop: number): Wording {
+  return stops[stop] || words.plan.stop(stop + 1);
 }
 
-function blockerName({ kind, id, door }: PlanBlocker, nameOf: NameOf): string {
+function isKnown(behaviour: string): behaviour is keyof typeof words.plan.behaviours {
+  return Object.hasOwn(words.plan.behaviours, behaviour);
+}
+
+function blockerOf(blocker: PlanBlocker | null, nameOf: NameOf): Blocker | null {
+  if (blocker === null) return null;
+  const { kind, id, door } = blocker;
   switch (kind) {
     case "person":
-    case "actor":
-      return (id === null ? null : nameOf(id)) ?? "somebody out of sight";
+    case "actor": {
+      const name = id === null ? null : nameOf(id);
+      return name === null ? { kind: "unseen" } : { kind: "named", name };
+    }
     case "door":
-      return door === null ? "a door" : `the door “${door}”`;
+      return door === null ? { kind: "unnamedDoor" } : { kind: "door", name: door };
     case "wall":
-      return "a wall";
     case "route":
-      return "a way that is still being found";
+      return { kind };
     default:
-      return "something";
+      return { kind: "something" };
   }
 }
 

@@ -1,80 +1,119 @@
-/** Sentences for people, made from the codes and arguments of the server in this page's words. */
+/** Sentences for people, made from the codes and arguments of the server. */
 
+import type { MoveReason } from "../language/arguments";
+import { english } from "../language/english";
+import type { Wording } from "../language/phrase";
+import { words } from "../language/words";
+import type { Ending, EndingCause } from "../net/closing";
 import type { Arguments, ServerMessage, Welcome } from "../net/messages";
+import type { Stated } from "../net/stated";
 
 type Fault = Extract<ServerMessage, { type: "error" }>;
 type Notice = Extract<ServerMessage, { type: "notice" }>;
 
 export interface Saying {
-  head: string;
-  /** The moderator's own words. */
-  words: string;
+  head: Wording;
+  /** The moderator's own words, as they wrote them. */
+  words: Wording;
 }
 
 /** The head line for a notice of moderators; null for notices of something else. */
 export function noticeOf({ notice, text, arguments: given }: Notice): Saying | null {
-  const words = textOf(given) ?? text;
+  const own = textOf(given) ?? text;
+  const { notices } = words;
   switch (notice) {
     case "announcement":
-      return { head: "Announcement", words };
+      return { head: notices.announcement, words: own };
     case "muted":
-      return { head: `You are muted for ${spanOf(numberOf(given, "seconds") ?? 0)}.`, words };
+      return { head: notices.muted(numberOf(given, "seconds") ?? 0), words: own };
     case "unmuted":
-      return { head: "You are heard again.", words };
+      return { head: notices.unmuted, words: own };
     case "warned":
-      return { head: "A moderator warns you.", words };
+      return { head: notices.warned, words: own };
     case "walked_out":
-      return { head: "You are being walked to the way out.", words };
+      return { head: notices.walkedOut, words: own };
     case "report_taken":
-      return {
-        head: "Thank you.",
-        words: "The people who look after this place can read your report now.",
-      };
+      return { head: notices.reportTaken, words: notices.reportRead };
     case "not_let_in":
-      return {
-        head: "You are not let in there just now.",
-        words: `${textOf(given, "why") ?? words}.`,
-      };
+      return { head: notices.notLetIn, words: notices.notLetInWhy(textOf(given, "why") ?? own) };
     default:
       return null;
   }
 }
 
+/** The sentence of a notice that nobody wrote: in this page's words as far as it has any. */
+export function remarkOf({ notice, text, arguments: given }: Notice): Wording {
+  return (notice === "goal_moved" ? movedOf(given) : null) ?? text;
+}
+
+/** The meaning of a notice of the world's pace; a place that does not answer stands still too. */
+export function paceOf({ notice, arguments: given }: Notice): Wording {
+  const { notices } = words;
+  const factor = numberOf(given, "factor") ?? 1;
+  const rate = numberOf(given, "rate") ?? factor;
+  const silent = given["silent"] === true;
+  if (notice === "paused") return silent ? notices.silent : notices.paused;
+  if (silent) return notices.heard;
+  if (factor === 1) return notice === "resumed" ? notices.resumed : notices.usual;
+  if (rate < factor) return notices.behind(factor, rate);
+  return factor < 1 ? notices.slow(factor) : notices.quick(factor);
+}
+
 /** The meaning of a fault, as far as this page has words of its own for it. */
-export function faultOf({ error, text, arguments: given }: Fault): string {
-  const seconds = numberOf(given, "seconds");
+export function faultOf({ error, text, arguments: given }: Fault): Wording {
+  const seconds = numberOf(given, "seconds") ?? 0;
+  const { faults } = words;
   switch (error) {
     case "muted":
-      return `Nobody heard that: you are muted for ${spanOf(seconds ?? 0)} more.`;
+      return faults.muted(seconds);
     case "slow_mode":
-      return `Nobody heard that: it is slow mode, so wait for ${spanOf(seconds ?? 0)}.`;
+      return faults.slowMode(seconds);
     case "word_refused":
-      return "Nobody heard that: there is a word in it that is not said here.";
-    case "quiet_zone": {
-      const name = typeof given["name"] === "string" ? ` (${given["name"]})` : "";
-      return `Nobody heard that: where you stand it is quiet${name}.`;
-    }
+      return faults.wordRefused;
+    case "quiet_zone":
+      return faults.quietZone(textOf(given, "name"));
+    case "no_path":
+      return faults.noPath;
+    case "forbidden":
+      return faults.forbidden;
+    case "lease_ended":
+      return faults.leaseEnded;
     default:
-      return `The server says: ${text}.`;
+      return faults.other(text);
   }
 }
 
-/** A length of time in words, such as "9:58 minutes". */
-export function spanOf(seconds: number): string {
-  const whole = Math.max(0, Math.ceil(seconds));
-  if (whole < 60) return counted(whole, 0, "second");
-  if (whole < 3600) return counted(Math.floor(whole / 60), whole % 60, "minute");
-  return counted(Math.floor(whole / 3600), Math.floor((whole % 3600) / 60), "hour");
+/** The causes of which the page's own sentence does not say all that the server says. */
+const UNTOLD: ReadonlySet<EndingCause> = new Set([
+  "invalid",
+  "admissionRefused",
+  "banned",
+  "kicked",
+  "unreadable",
+]);
+
+/** The reason for which a connection ended. */
+export function endingOf({ cause, stated }: Ending): Wording {
+  const ending = words.endings[cause];
+  if (stated === null || !UNTOLD.has(cause) || stated.words === english.endings[cause]) {
+    return ending;
+  }
+  return words.endingSaid(ending, saidOf(stated));
 }
 
-/** A number of units and of sixtieths of them. */
-function counted(number: number, sixtieths: number, unit: string): string {
-  if (sixtieths > 0) return `${number}:${two(sixtieths)} ${unit}s`;
-  return number === 1 ? `1 ${unit}` : `${number} ${unit}s`;
+function saidOf({ words: said, bannedUntilS }: Stated): Wording {
+  if (bannedUntilS === undefined) return said;
+  if (bannedUntilS === null) return words.bannedForGood(said);
+  return words.bannedUntil(said, new Date(bannedUntilS * 1000));
 }
 
-function two(number: number): string {
-  return String(number).padStart(2, "0");
+function movedOf(given: Arguments): Wording | null {
+  const [why, movedM] = [textOf(given, "why"), numberOf(given, "moved")];
+  return isMoveReason(why) && movedM !== null ? words.notices.goalMoved(why, movedM) : null;
+}
+
+function isMoveReason(why: string | null): why is MoveReason {
+  return why !== null && ["inside_wall", "near_wall", "no_ground", "other_region"].includes(why);
 }
 
 function numberOf(given: Arguments, name: string): number | null {
@@ -88,11 +127,11 @@ function textOf(given: Arguments, name = "text"): string | null {
 }
 
 /** The first line for somebody who comes in. */
-export function greetingOf({ name, resumed }: Welcome): string {
-  return resumed ? `Welcome back, ${name}.` : `Welcome, ${name}. See Help for how to get about.`;
+export function greetingOf({ name, resumed }: Welcome): Wording {
+  return resumed ? words.chat.welcomeBack(name) : words.chat.welcome(name);
 }
 
 /** The first line in another zone. */
-export function arrivalIn({ scene }: Welcome): string {
-  return `You have come to ${scene.name}.`;
+export function arrivalIn({ scene }: Welcome): Wording {
+  return words.chat.arrived(scene.name);
 }

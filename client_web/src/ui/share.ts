@@ -1,6 +1,8 @@
 /** The link that is shared: it is copied where the browser allows that, and shown in any case. */
 
+import { words } from "../language/words";
 import { byId } from "./dom";
+import { write } from "./writing";
 
 export class ShareBar {
   private readonly bar = byId("shared", HTMLElement);
@@ -24,6 +26,6 @@ export class ShareBar {
       () => true,
       () => false,
     );
-    this.text.textContent = copied === true ? "The link is copied." : "Copy this link:";
+    write(this.text, () => (copied === true ? words.links.copied : words.links.copy));
   }
 }

@@ -1,15 +1,10 @@
 /** The state of the connection: a chip at the top, and a banner while it is being restored. */
 
 import type { ConnectionState } from "../net/connection";
+import { words } from "../language/words";
 import { byId } from "./dom";
-
-const TEXTS: Record<ConnectionState["phase"], string> = {
-  idle: "Not connected",
-  connecting: "Connecting…",
-  live: "Connected",
-  reconnecting: "Reconnecting…",
-  refused: "Outside",
-};
+import { endingOf } from "./sentences";
+import { write } from "./writing";
 
 export class StatusChip {
   private readonly chip = byId("status", HTMLElement);
@@ -19,15 +14,15 @@ export class StatusChip {
 
   show(state: ConnectionState): void {
     this.chip.dataset.phase = state.phase;
-    this.text.textContent = TEXTS[state.phase];
+    write(this.text, () => words.status[state.phase]);
     this.banner.hidden = state.phase !== "reconnecting";
     if (state.phase === "reconnecting") {
-      this.banner.textContent = `${state.text} Coming back by itself…`;
+      write(this.banner, () => words.status.comingBack(endingOf(state.ending)));
     }
-    if (state.phase !== "live") this.delay.textContent = "";
+    if (state.phase !== "live") this.roundTrip(null);
   }
 
   roundTrip(seconds: number | null): void {
-    this.delay.textContent = seconds === null ? "" : `${Math.round(seconds * 1000)} ms`;
+    write(this.delay, () => (seconds === null ? "" : words.status.roundTrip(1000 * seconds)));
   }
 }

@@ -1,6 +1,8 @@
 /** The choice of the storey on the map: the own avatar's, or for a while another one. */
 
+import { words } from "../language/words";
 import { byId, element } from "./dom";
+import { write, writeAttribute } from "./writing";
 
 export class StoreySwitch {
   /** Counted from the ground, 0. */
@@ -35,9 +37,11 @@ export class StoreySwitch {
   }
 
   private button(storey: number): HTMLButtonElement {
-    const name = storey === 0 ? "Ground floor" : `Floor ${storey}`;
-    const sign = storey === 0 ? "G" : String(storey);
-    const button = element("button", { type: "button", "aria-label": name, title: name }, sign);
+    const button = element("button", { type: "button" });
+    write(button, () => words.map.sign(storey));
+    for (const attribute of ["aria-label", "title"]) {
+      writeAttribute(button, attribute, () => words.map.floor(storey));
+    }
     button.addEventListener("click", () => {
       this.choose(storey);
     });

@@ -1,5 +1,8 @@
 /** Where somebody is, in words, and all that is around: "Maple, 3 m, to the left, comes nearer". */
 
+import type { Side, Whereabouts } from "../language/arguments";
+import type { Wording } from "../language/phrase";
+import { words } from "../language/words";
 import { STOREYS_APART_M } from "../world/heights";
 import type { Avatar, World } from "../world/world";
 
@@ -9,40 +12,51 @@ const PLACE_M = 12;
 /** Slower than this nobody comes nearer or goes away, metres a second. */
 const SLOW_MPS = 0.25;
 
-/** Names of the eight directions, the first straight ahead, and then to the left. */
-const SIDES = [
+/** The eight directions, the first straight ahead, and then to the left. */
+const SIDES: readonly Side[] = [
   "ahead",
-  "ahead to the left",
-  "to the left",
-  "behind to the left",
+  "aheadLeft",
+  "left",
+  "behindLeft",
   "behind",
-  "behind to the right",
-  "to the right",
-  "ahead to the right",
-] as const;
+  "behindRight",
+  "right",
+  "aheadRight",
+];
 
-/** The name of a direction on the ground, seen by somebody who looks along `yaw`; radians. */
-export function sideOf(direction: number, yaw: number): string {
+type Spot = Record<"x" | "y" | "z", number>;
+
+/** A direction on the ground, seen by somebody who looks along `yaw`; radians. */
+export function sideOf(direction: number, yaw: number): Side {
   const eighth = Math.round((direction - yaw) / (Math.PI / 4));
   return SIDES[((eighth % 8) + 8) % 8] ?? "ahead";
 }
 
-export function whereabouts(
+/** Where somebody is, in words. */
+export function whereIs(other: Pick<Avatar, "pose" | "away">, here: Spot, yaw: number): Wording {
+  return words.card.where({ ...whereabouts(other, here, yaw), approach: null });
+}
+
+function whereabouts(
   { pose, away }: Pick<Avatar, "pose" | "away">,
-  here: { x: number; y: number; z: number },
+  here: Spot,
   yaw: number,
-): string {
+): Whereabouts {
   const [dx, dy, dz] = [pose.x - here.x, pose.y - here.y, pose.z - here.z];
-  const parts = [`${Math.round(Math.hypot(dx, dy))} m`, sideOf(Math.atan2(dy, dx), yaw)];
-  if (Math.abs(dz) > STOREYS_APART_M) parts.push(dz > 0 ? "further up" : "further down");
-  if (away) parts.push("away from the screen");
-  return parts.join(", ");
+  return {
+    distanceM: Math.round(Math.hypot(dx, dy)),
+    side: sideOf(Math.atan2(dy, dx), yaw),
+    floor: Math.abs(dz) <= STOREYS_APART_M ? "same" : dz > 0 ? "above" : "below",
+    away,
+    approach: approach(pose, here),
+  };
 }
 
 /** Sentences about the people and places around the own avatar, the nearest first. */
-export function surroundings({ own, avatars, scene }: World, yaw: number): string {
+export function surroundings({ own, avatars, scene }: World, yaw: number): Wording {
   if (!own) return "";
   const here = own.pose;
+  const { around } = words;
   const apartM = ({ x, y }: { x: number; y: number }): number => Math.hypot(x - here.x, y - here.y);
   const onFloor = (z: number): boolean => Math.abs(z - here.z) <= STOREYS_APART_M;
   const place = scene.places
@@ -52,26 +66,26 @@ export function surroundings({ own, avatars, scene }: World, yaw: number): strin
     .sort((a, b) => a.apart - b.apart)[0];
   const others = [...avatars.values()].filter(({ own: isOwn, pose }) => !isOwn && onFloor(pose.z));
   const nearest = others.sort((a, b) => apartM(a.pose) - apartM(b.pose)).slice(0, MOST);
-  const sentences = nearest.map((other) => {
-    const how = approach(other.pose, here);
-    return `${other.name}, ${whereabouts(other, here, yaw)}${how === "" ? "" : `, ${how}`}.`;
-  });
+  const sentences: Wording[] = nearest.map((other) =>
+    around.somebody(other.name, whereabouts(other, here, yaw)),
+  );
   if (place) {
     const side = sideOf(Math.atan2(place.y - here.y, place.x - here.x), yaw);
-    sentences.unshift(`The place ${place.name} is ${Math.round(place.apart)} m ${side}.`);
+    sentences.unshift(around.place(place.name, { distanceM: Math.round(place.apart), side }));
   }
   const more = others.length - nearest.length;
-  if (more > 0) sentences.push(`${more} more further away.`);
-  return others.length > 0 ? sentences.join(" ") : [...sentences, "Nobody is near."].join(" ");
+  if (more > 0) sentences.push(around.more(more));
+  if (others.length === 0) sentences.push(around.nobody);
+  return around.together(sentences);
 }
 
 /** Whether somebody comes nearer by their own walking, or goes away. */
 function approach(
   { x, y, heading, speed }: Avatar["pose"],
   here: { x: number; y: number },
-): string {
+): Whereabouts["approach"] {
   const towards = Math.atan2(here.y - y, here.x - x);
   const nearerMps = speed * Math.cos(heading - towards);
-  if (Math.abs(nearerMps) < SLOW_MPS) return "";
-  return nearerMps > 0 ? "comes nearer" : "goes away";
+  if (Math.abs(nearerMps) < SLOW_MPS) return null;
+  return nearerMps > 0 ? "nearer" : "further";
 }

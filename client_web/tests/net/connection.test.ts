@@ -86,7 +86,10 @@ describe("pings", () => {
   it("that stay unanswered end the connection", () => {
     comeIn();
     vi.advanceTimersByTime(6_500);
-    expect(states.at(-1)).toMatchObject({ phase: "reconnecting", text: "The server fell silent." });
+    expect(states.at(-1)).toMatchObject({
+      phase: "reconnecting",
+      ending: { cause: "serverSilent" },
+    });
   });
 
   it("end it sooner once the device says that it has no network", () => {
@@ -188,7 +191,7 @@ describe("a lost connection", () => {
       vi.advanceTimersByTime(60_000);
       expect(sockets).toHaveLength(1);
       const state = connection.state;
-      expect(state.phase === "refused" && state.text).toContain("(room for 3)");
+      expect(state.phase === "refused" && state.ending.stated).toEqual({ words: "room for 3" });
     },
   );
 

@@ -3,28 +3,36 @@ import { closing } from "../../src/net/closing";
 import { CloseCode } from "../../src/net/codes";
 import { stated } from "../../src/net/stated";
 
+const BANNED = {
+  type: "error" as const,
+  error: "banned",
+  text: "No shouting. (until 2030-05-17 21:40 UTC)",
+  arguments: { text: "No shouting.", until_s: 1_905_277_200 },
+};
+
 describe("what the server states", () => {
-  it("is told in the moderator's words, with the end of a ban in local time", () => {
-    const untilS = new Date(2030, 4, 17, 21, 40).getTime() / 1000;
-    const banned = {
-      type: "error" as const,
-      error: "banned",
-      text: "No shouting. (until 2030-05-17 21:40 UTC)",
-      arguments: { text: "No shouting.", until_s: untilS },
-    };
-    expect(stated(banned, "en-GB")).toBe(
-      "No shouting. You may come back after 17 May 2030, 21:40.",
-    );
-    expect(stated({ ...banned, arguments: { text: "No.", until_s: null } })).toBe(
-      "No. No end is set.",
-    );
-    const { text } = closing(CloseCode.BANNED, stated(banned, "en-GB"));
-    expect(text).toContain("You cannot come in here. (No shouting.");
+  it("is the moderator's words, with the end of a ban", () => {
+    expect(stated(BANNED)).toEqual({ words: "No shouting.", bannedUntilS: 1_905_277_200 });
+    expect(stated({ ...BANNED, arguments: { text: "No.", until_s: null } })).toEqual({
+      words: "No.",
+      bannedUntilS: null,
+    });
   });
 
-  it("is not said twice", () => {
-    const text = "An operator has asked you to leave.";
-    const bye = { type: "bye" as const, reason: "kicked", text, arguments: {} };
-    expect(closing(CloseCode.KICKED, stated(bye)).text).toBe(text);
+  it("else is the server's sentence", () => {
+    const full = { ...BANNED, error: "server_full", text: "no room", arguments: {} };
+    expect(stated(full)).toEqual({ words: "no room" });
+  });
+});
+
+describe("the end of a connection", () => {
+  it("has a cause by its close code, and the server's words", () => {
+    const words = { words: "No." };
+    expect(closing(CloseCode.KICKED, words)).toEqual({
+      cause: "kicked",
+      retry: false,
+      stated: words,
+    });
+    expect(closing(1006, null)).toEqual({ cause: "lost", retry: true, stated: null });
   });
 });

@@ -1,4 +1,5 @@
 import { describe, expect, it } from "vitest";
+import { plain } from "../../src/language/phrase";
 import { tooLong } from "../../src/ui/lengths";
 
 describe("the length of a text", () => {
@@ -8,8 +9,10 @@ describe("the length of a text", () => {
   });
 
   it("is told by how much it is too long", () => {
-    expect(tooLong("abcd", 3)).toBe("That is 1 character too long; 3 are the most.");
-    expect(tooLong("abcdef", 3)).toBe("That is 3 characters too long; 3 are the most.");
+    expect(plain(tooLong("abcd", 3) ?? "")).toBe("That is 1 character too long; 3 are the most.");
+    expect(plain(tooLong("abcdef", 3) ?? "")).toBe(
+      "That is 3 characters too long; 3 are the most.",
+    );
   });
 
   it("is counted in characters, as the server counts", () => {

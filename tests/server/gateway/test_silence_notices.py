@@ -31,8 +31,9 @@ def test_silence_is_told_once_and_its_end_too() -> None:
     for later_s in (0.1, 0.2):
         notices.check(50.0, 50.0 + SILENT_S + later_s)
     assert [each.notice for each in ann.notices] == ["paused"]
-    assert ann.notices[0].arguments == {"factor": 1.0, "rate": 0.0, "server_time": 12.5}
+    told = {"factor": 1.0, "rate": 0.0, "server_time": 12.5, "silent": True}
+    assert ann.notices[0].arguments == told
     notices.heard()
     notices.heard()
     assert [each.notice for each in ann.notices] == ["paused", "resumed"]
-    assert ann.notices[1].arguments["rate"] == 1.0
+    assert ann.notices[1].arguments == {**told, "rate": 1.0}
