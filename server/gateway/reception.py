@@ -319,6 +319,7 @@ class Reception:
                 await asyncio.sleep(due - loop.time())
                 if self._reading is not None:
                     self._reading.deliver()
+                    self._reading.tell_heard()
                 await self.views.send()
         finally:
             self._moderated.turns_out.remove(self._turn_out)

@@ -88,7 +88,7 @@ class Hub:
         )
         self.sessions = self._seating.sessions
         """Sessions that have been welcomed, by their avatar's id."""
-        self._leases = Leases(world.moves)
+        self._leases = Leases(world.moves, self._listen)
         self.reading: Reading | None = None
         """Reads what people send, where the event loop alone does not."""
         self._operator_keys = OperatorKeys(settings.operator_key.get_secret_value(), metrics)
@@ -338,6 +338,10 @@ class Hub:
             farewell = frames.message(Bye(reason=ByeCode.SILENT, text=text))
             self.depart(session, comes_back=True)
             session.dismiss(farewell, CloseCode.SILENT, ByeCode.SILENT.value)
+
+    def _listen(self) -> None:
+        if self.reading is not None:
+            self.reading.tell_heard()
 
     def _unread(self) -> int:
         """Movements of these sessions that wait where they were read."""

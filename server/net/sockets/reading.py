@@ -77,6 +77,8 @@ class Reading:
         self._receiving = Receiving(self._epoll)
         self._sources: dict[int, Source] = {}
         self._avatars: dict[int, int] = {}
+        self._heard: set[int] = set()
+        """Descriptors of those of whom movements were taken since this was last told to them."""
         self._rest: asyncio.TimerHandle | None = None
         self._loop.add_reader(self._epoll.fileno(), self._wake)
 
@@ -124,6 +126,9 @@ class Reading:
         descriptor = source.descriptor
         if self._receiving.purses.waits[descriptor]:
             self._take_movements(np.array([descriptor]))
+        if descriptor in self._heard:
+            self._heard.remove(descriptor)
+            source.heard = True
         del self._sources[descriptor]
         source.pay_back(int(self._receiving.purses.frames[descriptor]), self._loop.time())
         self._receiving.pay(descriptor, 0)
@@ -163,6 +168,12 @@ class Reading:
             else:
                 self.leave(source)
 
+    def tell_heard(self) -> None:
+        """Let the connections know of which anything was taken here since the last call."""
+        for descriptor in self._heard:
+            self._sources[descriptor].heard = True
+        self._heard.clear()
+
     def waiting(self) -> list[int]:
         """The avatars of which a movement waits."""
         return [self._avatars[descriptor] for descriptor in self._receiving.waiting().tolist()]
@@ -170,8 +181,7 @@ class Reading:
     def _take_movements(self, moved: NDArray[np.int64]) -> None:
         """Hand on the movements that wait of these descriptors."""
         descriptors = moved.tolist()
-        for descriptor in descriptors:
-            self._sources[descriptor].heard = True
+        self._heard.update(descriptors)
         purses = self._receiving.purses
         purses.waits[moved] = False
         try:

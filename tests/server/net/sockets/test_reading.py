@@ -190,7 +190,6 @@ async def test_whole_movements_are_read_at_once_and_anything_else_alone() -> Non
             await until(lambda k=k: len(recorder.got) == k + 1)
         assert recorder.got == first
         assert recorder.alone == 1
-        assert recorder.heard
         assert traffic.messages_in == 3
         assert traffic.bytes_in == sum(len(encode(each)) for each in first[1:])
         assert len(reading) == 1
@@ -311,12 +310,19 @@ async def test_the_latest_movement_waits_for_the_tick_and_goes_before_what_comes
         reading.deliver()
         assert recorder.got == [moves[0], moves[3]]
         assert reading.waiting() == []
+        assert not recorder.heard
+        reading.tell_heard()
+        assert recorder.heard
+        recorder.heard = False
+        reading.tell_heard()
+        assert not recorder.heard
         there.sendall(frame(moves[4]))
         await until(lambda: reading.waiting() == [AVATAR])
         assert len(recorder.got) == 2
         there.sendall(frame(Ping(nonce=1)))
         await until(lambda: len(recorder.got) == 4)
         assert recorder.got[2:] == [moves[4], Ping(nonce=1)]
+        assert recorder.heard
         assert recorder not in reading
         assert reading.waiting() == []
 
