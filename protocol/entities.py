@@ -29,6 +29,7 @@ def _keyed(*names: str) -> list[bytes]:
 _LAYER: Final = msgpack.packb("layer")
 _X, _Y, _Z, _HEADING = _keyed("x", "y", "z", "heading")
 _POINTS_AT: Final = msgpack.packb("points_at")
+_NIL: Final = msgpack.packb(None)
 _MOVING = struct.Struct(f">{len(_X)}sd{len(_Y)}sd{len(_Z)}sd{len(_HEADING)}sd")
 
 
@@ -74,5 +75,5 @@ def pack_entity(
     x, y, z = position_m
     moving = _MOVING.pack(_X, x, _Y, y, _Z, z, _HEADING, heading_rad)
     packed_layer = bytes((layer,)) if layer < 0x80 else bytes((0xCC, layer))
-    target: bytes = msgpack.packb(points_at)
+    target: bytes = _NIL if points_at is None else msgpack.packb(points_at)
     return b"".join((constants[0], _LAYER, packed_layer, moving, constants[1], _POINTS_AT, target))
