@@ -48,8 +48,9 @@ def test_candidates_are_compared(
     tmp_path: Path, crowds: list[Path], capsys: pytest.CaptureFixture[str]
 ) -> None:
     listed, target = tmp_path / "candidates.jsonl", tmp_path / "all.json"
-    listed.write_text('{"foresight_s": 2}\n')
+    listed.write_text('{"catch_up": 0.3}\n')
     study = [*crowds, "--tune", "--vary", "risk_weight=2,20", "--candidates", listed]
+    study += ["--set", "catch_up=0"]  # so slow a baseline that another one is better
     assert run(*study, "--score-cache", tmp_path / "done.jsonl", "--json", target) == exit_codes.OK
     shown = capsys.readouterr().out
     assert "Leave-one-out cross-validation" in shown
