@@ -72,7 +72,7 @@ class PlaceLookup:
 
     def layers_of(self, cells: NDArray[np.int64]) -> NDArray[np.int64]:
         """The layers of cells (N,); 0 for -1."""
-        return np.where(cells >= 0, self.layered.places[cells]["layer"], 0).astype(np.int64)
+        return np.where(cells >= 0, self.layered.places["layer"][cells], 0).astype(np.int64)
 
     def layer_at(self, position: tuple[float, float], height: float) -> int:
         """Layer of the standing surface nearest in height; 0 if there is none."""

@@ -120,7 +120,9 @@ def choose(
             turn = near
         next_turn = near
         for k in range(seen):
-            c = k if k < near else near + (k - near + turn - near) % (seen - near)
+            c = k if k < near else k - near + turn
+            if c >= seen:
+                c -= seen - near
             if views.under_way[v, c] & RECORD_UNDER_WAY:
                 continue
             if record_due(changes, budget, tick, views, v, c):
