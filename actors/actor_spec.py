@@ -6,6 +6,7 @@ from typing import Annotated, Final
 
 from pydantic import BaseModel, ConfigDict, Field, field_validator
 
+from esplanade.actors.appearance import Appearance
 from esplanade.actors.behaviour_spec import ActorId, BehaviourSpec, Point, WanderSpec
 from esplanade.actors.overrides import WORLD, Overrides
 
@@ -33,6 +34,7 @@ class ActorSpec(BaseModel):
     overrides: Annotated[
         dict[str, float | int], Field(description="Its own parameters, those that are not usual.")
     ] = {}
+    look: Annotated[Appearance, Field(description="What it wears.")] = Appearance()
     place: Point | None = None
     """Where it comes in; None for a free place, chosen with the seed."""
     near: Annotated[

@@ -154,7 +154,7 @@ class ActorParameters(BaseModel):
             "Part of the preferred speed by which the actor walks faster while it makes up time "
             "that it has lost on its way.",
         ),
-    ] = 0.2
+    ] = 0.3
     hysteresis_s: Annotated[
         float,
         _field(

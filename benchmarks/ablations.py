@@ -6,7 +6,7 @@
 One actor at a time walks among the recorded people of each file, as in `esplanade evaluate`; and
 two crowds of actors change sides through doorways, as in `python -m benchmarks.social`. Every row
 is the difference to what the defaults do in the same episodes and at the same doorways, with the
-95 % interval of a paired bootstrap, over episodes within each recording and over doorways. Bold
+95 % interval of a paired bootstrap, over pieces of time of each recording and over doorways. Bold
 intervals leave out 0. Throughput is that of the actors who have come through, by second and metre
 of width; those who have not by the end make it less. Without recordings only doorways are
 compared.
@@ -23,20 +23,20 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 from benchmarks import social
 from benchmarks._swaps import SWAPS
-from benchmarks._walks import Floats, Walks, judge
+from benchmarks._walks import Walks, judge
 from rich import box
 from rich.console import Console
 from rich.progress import Progress
 from rich.table import Table
 
+from esplanade.evaluation.measures import MEASURES, sample
 from esplanade.evaluation.rules import Rules
 from esplanade.evaluation.runner import run_trials
 from esplanade.evaluation.score_cache import ScoreCache
 from esplanade.evaluation.settings import check
-from esplanade.evaluation.studies.measures import bootstrap, mean_over_recordings, table
 from esplanade.evaluation.trials import Source, plan_trials
+from esplanade.stats import Sample, interval_of, means_of, resampled_means
 
-RESAMPLES: Final = 1000
 OFF: Final = 1_000_000
 """A number of actors that never come together."""
 
@@ -98,14 +98,12 @@ ALONE: Final = 3
 
 @dataclass(frozen=True)
 class Figures:
-    """Figures measured with some settings: means, and means of R resamples."""
+    """Figures measured with some settings."""
 
-    alone: Floats
-    """(3,) or empty."""
-    alone_resampled: Floats
-    """(R, 3)."""
-    together: Floats
-    """(D, 3): of each doorway."""
+    alone: list[Sample]
+    """Three figures of the episodes of each recording."""
+    together: list[Sample]
+    """Three figures of the doorways, each by itself; empty where none was measured."""
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -129,9 +127,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
         default = measured({}, True, True)
         rows = {a.name: measured(a.settings, a.alone, a.together) for a in chosen}
-    random = np.random.default_rng(options.seed)
-    picks = random.integers(0, len(default.together), (RESAMPLES, len(default.together)))
-    lines = {name: compared(found, default, picks) for name, found in rows.items()}
+    lines = {name: compared(found, default, options.seed) for name, found in rows.items()}
     show(lines, summed(default), options.markdown)
     if options.json is not None:
         told = {"default": summed(default), "differences": lines}
@@ -167,22 +163,17 @@ def measure(
 ) -> Figures:
     """Walk all episodes, and come through all doorways."""
     checked = check(settings)
-    tables = [
-        table(result.scores)[:, :ALONE]
-        for result in run_trials(
-            plan_trials(sources, ["esplanade"], Rules(), options.episodes, options.seed, checked),
-            options.processes,
-            lambda _: None,
-            cache,
-        )
-    ]
-    doors = [(door_m, seed) for door_m in options.doors for seed in options.seeds]
+    results = run_trials(
+        plan_trials(sources, ["esplanade"], Rules(), options.episodes, options.seed, checked),
+        options.processes,
+        lambda _: None,
+        cache,
+    )
+    doors = [(door_m, seed) for door_m in options.doors for seed in options.seeds if together]
+    through = [doorway(door_m, seed, checked, options) for door_m, seed in doors]
     return Figures(
-        mean_over_recordings(tables) if tables else np.empty(0),
-        bootstrap(tables, options.seed) if tables else np.empty((RESAMPLES, 0)),
-        np.array([doorway(door_m, seed, checked, options) for door_m, seed in doors])
-        if together
-        else np.empty((0, 3)),
+        [sample(result.scores, MEASURES[:ALONE]) for result in results],
+        [Sample.of(through, doors)] if through else [],
     )
 
 
@@ -214,27 +205,33 @@ def throughput(walks: Walks, middle_m: float, door_m: float) -> float:
 
 def summed(found: Figures) -> list[float | None]:
     """The mean figures, in the order of `COLUMNS`."""
-    alone = found.alone.tolist() if len(found.alone) else [None] * ALONE
-    return [*alone, *found.together.mean(axis=0).tolist()]
+    alone = means_of(found.alone, even=True).tolist() if found.alone else [None] * ALONE
+    return [*alone, *means_of(found.together, even=True).tolist()]
 
 
 def compared(
-    found: Figures, default: Figures, picks: np.ndarray[Any, Any]
+    found: Figures, default: Figures, seed: int
 ) -> list[tuple[float, float, float] | None]:
     """By column the difference to the defaults and its interval; None where none was measured."""
     made: list[tuple[float, float, float] | None] = [None] * len(COLUMNS)
-    if len(found.alone):
-        spread = found.alone_resampled - default.alone_resampled
-        made[:ALONE] = _intervals(found.alone - default.alone, spread)
-    if len(found.together):
-        change = found.together - default.together
-        made[ALONE:] = _intervals(change.mean(axis=0), change[picks].mean(axis=1))
+    if found.alone:
+        made[:ALONE] = _differences(found.alone, default.alone, seed)
+    if found.together:
+        made[ALONE:] = _differences(found.together, default.together, seed)
     return made
 
 
-def _intervals(means: Floats, resampled: Floats) -> list[tuple[float, float, float] | None]:
-    low, high = np.percentile(resampled, [2.5, 97.5], axis=0)
-    return list(zip(means.tolist(), low.tolist(), high.tolist(), strict=True))
+def _differences(
+    found: Sequence[Sample], default: Sequence[Sample], seed: int
+) -> list[tuple[float, float, float] | None]:
+    """The paired differences of the figures and the interval of each by itself."""
+    paired = [
+        Sample(ours.values - theirs.values, ours.clusters)
+        for ours, theirs in zip(found, default, strict=True)
+    ]
+    intervals = interval_of(resampled_means(paired, seed, even=True), paired)
+    means = means_of(paired, even=True).tolist()
+    return [(mean, *interval) for mean, interval in zip(means, intervals, strict=True)]
 
 
 def show(

@@ -15,6 +15,7 @@ from esplanade.evaluation.runner import TrialResult, ready_policy
 from esplanade.evaluation.score_cache import ScoreCacheError
 from esplanade.evaluation.settings import SettingError, read_changes
 from esplanade.evaluation.studies import command
+from esplanade.evaluation.summaries import differences, rows_of
 from esplanade.evaluation.trajectory_files import EpisodeFiles
 from esplanade.evaluation.trials import Source, plan_trials
 from esplanade.recordings import RecordingError
@@ -57,12 +58,15 @@ def _trips(options: Namespace) -> bool:
     )
     _check_numbers(options.plot_episodes, min(len(trial.episodes) for trial in trials))
     results = walk(trials, options, _files(options, names))
-    rows = report.summaries(results, names)
-    report.show(console(), rows, reacting=rules.people == "reacting")
+    reacting = rules.people == "reacting"
+    rows = rows_of(results, names, options.seed)
+    compared = differences(results, options.seed, reacting=reacting)
+    report.show(console(), rows, reacting=reacting)
+    report.show_differences(console(), results[0].trial.label, compared)
     report.show_faults(console(), results, names)
     if options.json is not None:
         told = {**rules.__dict__, "seed": options.seed, "interpolation": options.interp}
-        figures = report.figures(results, rows, names, {**told, **settings})
+        figures = report.figures(results, rows, compared, names, {**told, **settings})
         write_json("--json", options.json, figures)
     if options.plots is not None:
         _draw(options, results, names)

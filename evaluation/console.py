@@ -1,7 +1,7 @@
 """The recordings that the command line names, and the run of trials with a progress bar."""
 
 from argparse import Namespace
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from esplanade.commandline.errors import UsageError
@@ -37,6 +37,25 @@ def named_sources(options: Namespace) -> dict[Source, str]:
     names = {source: source.read()[0].name for source in sources}
     shared = {name for name in names.values() if list(names.values()).count(name) > 1}
     return {s: str(s.path.with_suffix("")) if n in shared else n for s, n in names.items()}
+
+
+def places_of(options: Namespace, names: Mapping[Source, str]) -> dict[Source, str]:
+    """The place of each recording: its own, or that which --place names.
+
+    Raises
+    ------
+    UsageError
+        A recording is not among those of the command line, or is named for two places.
+    """
+    at: dict[str, str] = {}
+    for place, recordings in options.place:
+        for name in recordings:
+            if name not in names.values():
+                told = ", ".join(names.values())
+                raise UsageError(f"--place: there is no recording {name}, but {told}")
+            if at.setdefault(name, place) != place:
+                raise UsageError(f"--place: {name} was recorded at {at[name]} or at {place}")
+    return {source: at.get(name, name) for source, name in names.items()}
 
 
 def rules_of(options: Namespace) -> Rules:

@@ -212,7 +212,16 @@ def _add_studies(studies: Any) -> None:
     kinds.add_argument(
         "--tune",
         action="store_true",
-        help="compare candidates, choosing without one recording after the other",
+        help="compare candidates, choosing without one place after the other",
+    )
+    studies.add_argument(
+        "--place",
+        metavar="PLACE=NAME,NAME",
+        type=_place,
+        action="append",
+        default=[],
+        help="recordings that were made at one place and count as one in a study; may be given "
+        "several times [default: each at its own]",
     )
     studies.add_argument(
         "--vary",
@@ -239,25 +248,15 @@ def check(options: Namespace) -> None:
     UsageError
         They do not.
     """
-    studies = options.sensitivity or options.tune
     _check_policies(options)
+    _check_studies(options)
     if options.trajectories is not None:
-        if studies or options.prediction or options.fit:
+        if options.sensitivity or options.tune or options.prediction or options.fit:
             raise UsageError("--trajectories is for episodes that are walked once")
         try:
             check_suffix(options.trajectories)
         except ValueError as error:
             raise UsageError(f"--trajectories: {error}") from None
-    if options.vary and not studies:
-        raise UsageError("--vary is for --sensitivity and --tune")
-    if options.candidates is not None and not options.tune:
-        raise UsageError("--candidates is for --tune")
-    if studies and options.score_cache is None:
-        raise UsageError("a study takes long: keep its scores with --score-cache FILE")
-    if options.tune and not (options.vary or options.candidates):
-        raise UsageError("--tune needs candidates: --vary NAME=V1,V2,.. or --candidates FILE")
-    if options.tune and not all("=" in text for text in options.vary):
-        raise UsageError("--vary: --tune needs values, as NAME=V1,V2,..")
     if options.reaction is not None and options.people != "reacting":
         raise UsageError("--reaction is for --people reacting")
     if options.walls is not None and len(options.crowds) > 1:
@@ -266,6 +265,23 @@ def check(options: Namespace) -> None:
         check_reading(vars(options))
     except ValueError as error:
         raise UsageError(str(error)) from None
+
+
+def _check_studies(options: Namespace) -> None:
+    """Whether a study has what it needs, and nothing is given for one that is not asked for."""
+    studies = options.sensitivity or options.tune
+    if options.vary and not studies:
+        raise UsageError("--vary is for --sensitivity and --tune")
+    if options.place and not studies:
+        raise UsageError("--place is for --sensitivity and --tune")
+    if options.candidates is not None and not options.tune:
+        raise UsageError("--candidates is for --tune")
+    if studies and options.score_cache is None:
+        raise UsageError("a study takes long: keep its scores with --score-cache FILE")
+    if options.tune and not (options.vary or options.candidates):
+        raise UsageError("--tune needs candidates: --vary NAME=V1,V2,.. or --candidates FILE")
+    if options.tune and not all("=" in text for text in options.vary):
+        raise UsageError("--vary: --tune needs values, as NAME=V1,V2,..")
 
 
 def _check_policies(options: Namespace) -> None:
@@ -321,6 +337,14 @@ def _of_setting(text: str) -> str:
     if name not in NAMES:
         raise ArgumentTypeError(f"{name}: there is no such setting{suggestion(name, NAMES)}")
     return text
+
+
+def _place(text: str) -> tuple[str, tuple[str, ...]]:
+    place, equals, names = text.partition("=")
+    recordings = tuple(filter(None, names.split(",")))
+    if not (place and equals and recordings):
+        raise ArgumentTypeError(f"{text!r} is not PLACE=NAME,NAME, as zara=zara1,zara2")
+    return place, recordings
 
 
 def _acceleration(text: str) -> float | None:

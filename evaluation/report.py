@@ -1,6 +1,5 @@
 """Reports of episodes: tables, and one object for JSON."""
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from typing import Any
@@ -9,10 +8,11 @@ from rich import box
 from rich.console import Console
 from rich.table import Table
 
+from esplanade.evaluation.cells import number, with_interval
+from esplanade.evaluation.measures import Measure
 from esplanade.evaluation.runner import TrialResult
-from esplanade.evaluation.scores import Score, Summary, summarise
-
-POOLED = "all together"
+from esplanade.evaluation.summaries import Row
+from esplanade.stats import Difference, needed
 
 LINES = (
     ("episodes", "episodes", 0),
@@ -36,41 +36,60 @@ OF_REACTING_PEOPLE = frozenset({"displacement_m"})
 """Rows that are left out where people do not react."""
 FAULTS = "faults_percent"
 """The row that is left out where no policy failed."""
+DIFFERENCE_PERCENT = 1.0
+"""The difference of contacts for which the number of episodes is told."""
 
 
-def summaries(
-    results: Sequence[TrialResult], names: Mapping[Any, str]
-) -> list[tuple[str, str, Summary]]:
-    """Rows of (recording, policy, summary), first for each recording, then for all together."""
-    rows = [(names[r.trial.source], r.trial.label, summarise(r.scores)) for r in results]
-    if len({r.trial.source for r in results}) > 1:
-        pooled: dict[str, list[Score]] = {}
-        for result in results:
-            pooled.setdefault(result.trial.label, []).extend(result.scores)
-        rows += [(POOLED, policy, summarise(scores)) for policy, scores in pooled.items()]
-    return rows
-
-
-def show(
-    console: Console, rows: Sequence[tuple[str, str, Summary]], *, reacting: bool = False
-) -> None:
+def show(console: Console, rows: Sequence[Row], *, reacting: bool = False) -> None:
     """Print one table for each recording, with a column for each policy.
 
     `reacting` says whether people react, and something can be imposed on them.
     """
-    for recording in dict.fromkeys(name for name, _, _ in rows):
-        shown = {policy: summary for name, policy, summary in rows if name == recording}
+    for recording in dict.fromkeys(row.recording for row in rows):
+        shown = [row for row in rows if row.recording == recording]
         table = Table("", title=recording, title_justify="left", box=box.SIMPLE_HEAD)
-        for policy in shown:
-            table.add_column(policy, justify="right")
+        for row in shown:
+            table.add_column(row.policy, justify="right")
         for heading, field, digits in LINES:
-            values = [getattr(summary, field) for summary in shown.values()]
+            values = [getattr(row.summary, field) for row in shown]
             if field in OF_REACTING_PEOPLE and not reacting:
                 continue
             if field == FAULTS and not any(values):
                 continue
-            table.add_row(heading, *(_cell(value, digits) for value in values))
+            cells = (
+                with_interval(value, row.intervals[field], digits)
+                if field in row.intervals
+                else number(value, digits)
+                for value, row in zip(values, shown, strict=True)
+            )
+            table.add_row(heading, *cells)
         console.print(table)
+
+
+def show_differences(
+    console: Console, first: str, found: Mapping[str, Mapping[Measure, Difference]]
+) -> None:
+    """Print how the other policies differ from the first one in the same episodes."""
+    if not found:
+        return
+    title = f"Differences from {first} in the same episodes (*: beyond chance)"
+    table = Table("", title=title, title_justify="left", box=box.SIMPLE_HEAD)
+    for policy in found:
+        table.add_column(policy, justify="right")
+    for measure in dict.fromkeys(m for differences in found.values() for m in differences):
+        cells = (
+            with_interval(of[measure].mean, of[measure].interval, measure.digits, "+")
+            + ("*" if of[measure].differs else " ")
+            for of in found.values()
+        )
+        table.add_row(measure.label, *cells)
+    told = [needed(next(iter(of.values())), DIFFERENCE_PERCENT) for of in found.values()]
+    table.add_section()
+    table.add_row(
+        f"episodes that show a difference of {DIFFERENCE_PERCENT:g} % of contacts",
+        *(number(count, 0) + " " for count in told),
+    )
+    console.print(table)
 
 
 def show_faults(console: Console, results: Sequence[TrialResult], names: Mapping[Any, str]) -> None:
@@ -89,16 +108,35 @@ def show_faults(console: Console, results: Sequence[TrialResult], names: Mapping
 
 def figures(
     results: Sequence[TrialResult],
-    rows: Sequence[tuple[str, str, Summary]],
+    rows: Sequence[Row],
+    differences: Mapping[str, Mapping[Measure, Difference]],
     names: Mapping[Any, str],
     settings: Mapping[str, Any],
 ) -> dict[str, Any]:
-    """All summaries and episodes, ready for JSON."""
+    """All summaries, differences and episodes, ready for JSON."""
     return {
         "settings": dict(settings),
         "summaries": [
-            {"recording": name, "policy": policy, **asdict(summary)}
-            for name, policy, summary in rows
+            {
+                "recording": row.recording,
+                "policy": row.policy,
+                **asdict(row.summary),
+                "intervals": {name: list(bounds) for name, bounds in row.intervals.items()},
+            }
+            for row in rows
+        ],
+        "differences": [
+            {
+                "policy": policy,
+                "from": results[0].trial.label,
+                "measure": measure.name,
+                "mean": found.mean,
+                "interval": list(found.interval),
+                "episodes": found.episodes,
+                "differs": found.differs,
+            }
+            for policy, of in differences.items()
+            for measure, found in of.items()
         ],
         "episodes": [
             {"recording": names[r.trial.source], "policy": r.trial.label, **asdict(score)}
@@ -106,7 +144,3 @@ def figures(
             for score in r.scores
         ],
     }
-
-
-def _cell(value: float, digits: int) -> str:
-    return f"{value:.{digits}f}" if math.isfinite(value) else "–"

@@ -12,7 +12,7 @@ from typing import Final
 import msgpack
 
 from esplanade.protocol.codes import Kind
-from esplanade.protocol.looks import NO_LOOK, Look
+from esplanade.protocol.looks import NO_LOOK, Look, parts_of
 
 Place = tuple[float, float, float]
 
@@ -29,6 +29,7 @@ def _keyed(*names: str) -> list[bytes]:
 _LAYER: Final = msgpack.packb("layer")
 _X, _Y, _Z, _HEADING = _keyed("x", "y", "z", "heading")
 _POINTS_AT: Final = msgpack.packb("points_at")
+_NIL: Final = msgpack.packb(None)
 _MOVING = struct.Struct(f">{len(_X)}sd{len(_Y)}sd{len(_Z)}sd{len(_HEADING)}sd")
 
 
@@ -59,7 +60,7 @@ def pack_constants(entity: Entity) -> tuple[bytes, bytes]:
         packer.pack(getattr(entity, name))
     if entity.look != NO_LOOK:
         packer.pack("look")
-        packer.pack(entity.look)
+        packer.pack(parts_of(entity.look))
     return head, packer.bytes()
 
 
@@ -74,5 +75,5 @@ def pack_entity(
     x, y, z = position_m
     moving = _MOVING.pack(_X, x, _Y, y, _Z, z, _HEADING, heading_rad)
     packed_layer = bytes((layer,)) if layer < 0x80 else bytes((0xCC, layer))
-    target: bytes = msgpack.packb(points_at)
+    target: bytes = _NIL if points_at is None else msgpack.packb(points_at)
     return b"".join((constants[0], _LAYER, packed_layer, moving, constants[1], _POINTS_AT, target))

@@ -1,4 +1,4 @@
-"""The look of a person: clothes, hair, skin and stature, as six small whole numbers."""
+"""The look of an avatar: clothes, hair, skin, stature and a sign, as small whole numbers."""
 
 from typing import Annotated, Any, Final, NamedTuple
 
@@ -16,14 +16,18 @@ class Look(NamedTuple):
     skin: int = 0
     stature_cm: int = 0
     """From the ground to the top of the head."""
+    sign: int = 0
+    """1 for a sign above the head, by which guides are found. Nobody can choose one."""
 
 
 NO_LOOK: Final = Look()
 
-MOST: Final = Look(shirt=12, trousers=8, hair=5, hair_colour=8, skin=8, stature_cm=200)
+MOST: Final = Look(shirt=12, trousers=8, hair=5, hair_colour=8, skin=8, stature_cm=200, sign=1)
 """The greatest number of each part."""
 SHORTEST_CM: Final = 150
 """The least stature that can be chosen."""
+CHOSEN: Final = Look._fields[:-1]
+"""The parts that a person chooses."""
 
 
 def checked_look(value: Any) -> Look:
@@ -32,13 +36,14 @@ def checked_look(value: Any) -> Look:
     Raises
     ------
     ValueError
-        It is not six whole numbers, or a part has a number that does not exist; the message names
-        the part.
+        It is not a whole number for each part that can be chosen, or a part has a number that
+        does not exist; the message names the part.
     """
-    parts = list(value) if isinstance(value, list | tuple) else []
-    if len(parts) != len(Look._fields):
-        raise ValueError(f"a look is the array [{', '.join(Look._fields)}]")
-    for name, part in zip(Look._fields, parts, strict=True):
+    told = parts_of(value) if isinstance(value, Look) else value
+    parts = list(told) if isinstance(told, list | tuple) else []
+    if len(parts) != len(CHOSEN):
+        raise ValueError(f"a look is the array [{', '.join(CHOSEN)}]")
+    for name, part in zip(CHOSEN, parts, strict=True):
         if type(part) is not int:
             raise ValueError(f"{name} is {part!r:.20}, and no whole number")
         if not _exists(name, part):
@@ -53,6 +58,11 @@ def known_look(value: Any) -> Look:
     return Look(**{name: part for name, part in known if type(part) is int and _exists(name, part)})
 
 
+def parts_of(look: Look) -> list[int]:
+    """The look as it is told; a sign is left out where there is none."""
+    return list(look if look.sign else look[:-1])
+
+
 def _exists(name: str, part: int) -> bool:
     return part == 0 or _least(name) <= part <= getattr(MOST, name)
 
@@ -65,7 +75,7 @@ def _range_of(name: str) -> str:
     return f"{_least(name)} to {getattr(MOST, name)}"
 
 
-_AS_LIST: Final = PlainSerializer(list, return_type=list[int])
+_AS_LIST: Final = PlainSerializer(parts_of, return_type=list[int])
 ChosenLook = Annotated[Look, PlainValidator(checked_look), _AS_LIST]
 """A look as clients send it."""
 KnownLook = Annotated[Look, PlainValidator(known_look), _AS_LIST]

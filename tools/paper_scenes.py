@@ -49,7 +49,7 @@ FIG_10: Final = Figure(
     _scene(block(3, 10, 7, 13), block(13, 3, 16, 6)),
     start=(10.0, 2.0),
     goal=(10.0, 14.0),
-    people={"0": along((4.2, 8.0), (8.8, 8.0), (10.6, 13.5), speed_mps=1.1)},
+    people={"0": along((4.2, 8.0), (8.8, 8.0), (10.6, 13.5), speed_mps=1.2)},
     seconds=16.0,
 )
 """A person comes from the left, and turns where it would pass in front: into the actor's way."""

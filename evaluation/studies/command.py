@@ -7,7 +7,7 @@ from typing import Any
 from esplanade.commandline.errors import UsageError
 from esplanade.commandline.output import console, made_folder, write_json
 from esplanade.evaluation import plotting
-from esplanade.evaluation.console import named_sources, rules_of, walk
+from esplanade.evaluation.console import named_sources, places_of, rules_of, walk
 from esplanade.evaluation.rules import Rules
 from esplanade.evaluation.settings import read_changes, read_choices
 from esplanade.evaluation.studies import report, sensitivity, sensitivity_plot, tuning
@@ -26,7 +26,7 @@ def show_sensitivity(options: argparse.Namespace) -> None:
         for value in taken
     ]
     trials = trials_of(variants, list(names), options.episodes, options.seed)
-    tables = tables_of(walk(trials, options))
+    tables = tables_of(walk(trials, options), places_of(options, names))
     found = sensitivity.curves(values, base, rules, tables, options.seed)
     report.show_curves(console(), found)
     if options.json is not None:
@@ -37,22 +37,23 @@ def show_sensitivity(options: argparse.Namespace) -> None:
 
 
 def show_tuning(options: argparse.Namespace) -> None:
-    """Compare candidates, with leave-one-out cross-validation over the recordings."""
+    """Compare candidates, with leave-one-out cross-validation over the places."""
     names, base, rules = _begin(options)
     choices = read_choices(options.vary)
     grid = {name: values for name, values in choices.items() if values is not None}
     listed = [] if options.candidates is None else tuning.read_candidates(options.candidates)
     if not grid and not listed:
         raise UsageError(f"--candidates: {options.candidates} has none")
-    if len(names) < 2:
-        raise UsageError("--tune needs two recordings, as each is left out of the choice in turn")
+    places = places_of(options, names)
+    if len(set(places.values())) < 2:
+        raise UsageError("--tune needs two places, as each is left out of the choice in turn")
     variants = [Variant.of(rules, found) for found in tuning.candidates(grid, listed, base)]
     trials = trials_of(variants, list(names), options.episodes, options.seed)
-    tables = tables_of(walk(trials, options))
+    tables = tables_of(walk(trials, options), places)
     found = tuning.tune(tables, variants[0], options.seed)
-    report.show_tuning(console(), found, names)
+    report.show_tuning(console(), found)
     if options.json is not None:
-        told = {"settings": _settings(options, names, base), **tuning.figures(found, names)}
+        told = {"settings": _settings(options, names, base), **tuning.figures(found)}
         write_json("--json", options.json, told)
 
 

@@ -1,25 +1,25 @@
 """The results of studies as tables."""
 
-import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any, Final
 
 from rich import box
 from rich.console import Console
 from rich.table import Table
 
-from esplanade.evaluation.studies.measures import MEASURES, Measure
+from esplanade.evaluation.cells import number, with_interval
+from esplanade.evaluation.measures import MEASURES, Measure
 from esplanade.evaluation.studies.sensitivity import Curve
 from esplanade.evaluation.studies.tuning import Tuning
 from esplanade.evaluation.studies.variants import Variant
-from esplanade.evaluation.trials import Source
+from esplanade.stats import Interval
 
 RANKED_SHOWN: Final = 15
 BASELINE: Final = "baseline"
 CHOSEN: Final = "settings"
 """The heading of the column whose cells may wrap."""
 HELD_OUT_MEASURES: Final = MEASURES[:3]
-"""The measures that are shown of a recording that was left out; the JSON has all."""
+"""The measures that are shown of a place that was left out; the JSON has all."""
 
 
 def show_curves(console: Console, curves: Sequence[Curve]) -> None:
@@ -31,9 +31,10 @@ def show_curves(console: Console, curves: Sequence[Curve]) -> None:
     for curve in curves:
         for point in curve.points:
             here = point.value == curve.baseline
+            bounds = map(Interval, point.lows, point.highs)
             cells = (
-                _cell(mean, measure.digits) + ("*" if differs else " ")
-                for measure, mean, differs in zip(MEASURES, point.means, point.differs, strict=True)
+                cell + ("*" if differs else " ")
+                for cell, differs in zip(_cells(point.means, [*bounds]), point.differs, strict=True)
             )
             value = f"{point.value} {BASELINE}" if here else f"{point.value}"
             table.add_row(curve.name if point is curve.points[0] else "", value, *cells)
@@ -41,16 +42,20 @@ def show_curves(console: Console, curves: Sequence[Curve]) -> None:
     console.print(table)
 
 
-def show_tuning(console: Console, tuning: Tuning, names: Mapping[Source, str]) -> None:
-    """Print the best candidates on all recordings, then the result of cross-validation."""
-    table = _table("Candidates on all recordings", CHOSEN, "cost")
+def show_tuning(console: Console, tuning: Tuning) -> None:
+    """Print the best candidates on all places, then the result of cross-validation."""
+    table = _table("Candidates on all places", CHOSEN, "cost")
     for variant, measures, cost in tuning.ranked[:RANKED_SHOWN]:
-        table.add_row(_describe(variant, tuning), _cell(cost, 2), *_cells(measures))
+        table.add_row(
+            _describe(variant, tuning),
+            number(cost, 2),
+            *_cells(measures, tuning.intervals[variant]),
+        )
     if len(tuning.ranked) > RANKED_SHOWN:
         table.add_row(f"and {len(tuning.ranked) - RANKED_SHOWN} more")
     console.print(table)
     table = _table(
-        "Leave-one-out cross-validation over recordings",
+        "Leave-one-out cross-validation over places",
         "left out",
         CHOSEN,
         "cost",
@@ -60,10 +65,10 @@ def show_tuning(console: Console, tuning: Tuning, names: Mapping[Source, str]) -
     )
     for fold in tuning.folds:
         table.add_row(
-            names[fold.left_out],
+            fold.left_out,
             _describe(fold.chosen, tuning),
-            *(_cell(cost, 2) for cost in (fold.cost, fold.baseline_cost, fold.least_cost)),
-            *_cells(fold.measures)[: len(HELD_OUT_MEASURES)],
+            *(number(cost, 2) for cost in (fold.cost, fold.baseline_cost, fold.least_cost)),
+            *_cells(fold.measures, fold.intervals)[: len(HELD_OUT_MEASURES)],
         )
     console.print(table)
     best = tuning.ranked[0][0]
@@ -71,7 +76,7 @@ def show_tuning(console: Console, tuning: Tuning, names: Mapping[Source, str]) -
         console.print("No candidate costs less than the baseline.")
     else:
         console.print(
-            f"Chosen on all recordings: {_describe(best, tuning)}. It costs less than the baseline "
+            f"Chosen on all places: {_describe(best, tuning)}. It costs less than the baseline "
             f"in {tuning.confidence_percent:.0f} % of bootstrap resamples."
         )
 
@@ -94,13 +99,12 @@ def _table(title: str, *headings: str, measures: Sequence[Measure] = MEASURES) -
         chosen = heading == CHOSEN
         table.add_column(heading, no_wrap=not chosen, min_width=20 if chosen else None)
     for measure in measures:
-        table.add_column(measure.short, justify="right", no_wrap=True)
+        table.add_column(measure.short, justify="right")
     return table
 
 
-def _cells(measures: Sequence[float] | Any) -> list[str]:
-    return [_cell(v, measure.digits) for v, measure in zip(measures, MEASURES, strict=True)]
-
-
-def _cell(value: float, digits: int) -> str:
-    return f"{value:.{digits}f}" if math.isfinite(value) else "–"
+def _cells(measures: Sequence[float] | Any, intervals: Sequence[Interval]) -> list[str]:
+    return [
+        with_interval(value, interval, measure.digits)
+        for value, interval, measure in zip(measures, intervals, MEASURES, strict=True)
+    ]

@@ -7,16 +7,12 @@ from typing import Any, Final
 import numpy as np
 
 from esplanade.actors import ActorParameters
+from esplanade.evaluation.measures import MEASURES
 from esplanade.evaluation.rules import Rules
 from esplanade.evaluation.settings import DEFAULTS, SettingError, check
-from esplanade.evaluation.studies.measures import (
-    MEASURES,
-    bootstrap,
-    mean_over_recordings,
-    percentile_interval,
-)
 from esplanade.evaluation.studies.variants import Tables, Variant
 from esplanade.planning import RuleModel
+from esplanade.stats import interval_of, means_of, resampled_means
 
 BODY_PARAMETERS: Final = frozenset(
     {
@@ -97,20 +93,21 @@ def curves(
     found = []
     for name, taken in values.items():
         baseline = _baseline(name, base)
-        reference = bootstrap(tables[variant_of(rules, base, name, baseline)].values(), seed)
+        unchanged = list(tables[variant_of(rules, base, name, baseline)].values())
+        reference = resampled_means(unchanged, seed, even=True)
         points = []
         for value in taken:
-            measured = tables[variant_of(rules, base, name, value)].values()
-            resamples = bootstrap(measured, seed)
-            low, high = percentile_interval(resamples)
-            less, more = percentile_interval(resamples - reference)
+            measured = list(tables[variant_of(rules, base, name, value)].values())
+            resamples = resampled_means(measured, seed, even=True)
+            intervals = interval_of(resamples, measured)
+            differences = interval_of(resamples - reference, measured)
             points.append(
                 Point(
                     value,
-                    tuple(mean_over_recordings(measured).tolist()),
-                    tuple(low.tolist()),
-                    tuple(high.tolist()),
-                    tuple(np.asarray((less > 0) | (more < 0)).tolist()),
+                    tuple(means_of(measured, even=True).tolist()),
+                    tuple(interval.low for interval in intervals),
+                    tuple(interval.high for interval in intervals),
+                    tuple(found.low > 0.0 or found.high < 0.0 for found in differences),
                 )
             )
         found.append(Curve(name, _schema(name).get("unit", ""), baseline, tuple(points)))

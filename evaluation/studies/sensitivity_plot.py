@@ -8,8 +8,8 @@ from typing import Any, Final
 import numpy as np
 
 from esplanade.commandline.pictures import save
+from esplanade.evaluation.measures import MEASURES
 from esplanade.evaluation.plotting import require_matplotlib
-from esplanade.evaluation.studies.measures import MEASURES
 from esplanade.evaluation.studies.sensitivity import Curve, Point
 
 SHOWN: Final = 4

@@ -1,26 +1,20 @@
-"""Tuning: the best settings by cost, with leave-one-out cross-validation over recordings."""
+"""Tuning: the best settings by cost, with leave-one-out cross-validation over places."""
 
 import itertools
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
 
+from esplanade.evaluation.measures import MEASURES, Floats, named
 from esplanade.evaluation.settings import SettingError, check
-from esplanade.evaluation.studies.measures import (
-    MEASURES,
-    Floats,
-    bootstrap,
-    mean_over_recordings,
-    named,
-)
 from esplanade.evaluation.studies.variants import Tables, Variant
-from esplanade.evaluation.trials import Source
 from esplanade.files.content import ContentError
 from esplanade.files.text import read_text
+from esplanade.stats import Interval, Sample, interval_of, means_of, resampled_means
 
 WEIGHT_BEYOND_GOALS: Final = 0.1
 """The weight of improvements once a goal is met; before that, their weight is 1 more."""
@@ -32,24 +26,27 @@ _HAS_GOAL: Final = np.array([m.goal > m.best for m in MEASURES])
 
 @dataclass(frozen=True)
 class Fold:
-    """A candidate chosen on all recordings but one, and its results on that one."""
+    """A candidate chosen on all places but one, and its results there."""
 
-    left_out: Source
+    left_out: str
     chosen: Variant
     measures: Floats
+    intervals: Sequence[Interval]
     cost: float
     baseline_cost: float
     least_cost: float
-    """The cost of the candidate that is best on the recording left out."""
+    """The cost of the candidate that is best at the place left out."""
 
 
 @dataclass(frozen=True)
 class Tuning:
-    """The candidates ranked on all recordings, and one fold for each recording."""
+    """The candidates ranked on all places, and one fold for each place."""
 
     baseline: Variant
     ranked: tuple[tuple[Variant, Floats, float], ...]
     """Rows of (candidate, measures, cost), the best first."""
+    intervals: Mapping[Variant, Sequence[Interval]]
+    """The intervals of each candidate's measures."""
     folds: tuple[Fold, ...]
     confidence_percent: float
     """The share of bootstrap resamples in which the best candidate costs less than the baseline."""
@@ -106,28 +103,27 @@ def cost(measures: Floats) -> Floats:
 
 
 def tune(tables: Mapping[Variant, Tables], baseline: Variant, seed: int) -> Tuning:
-    """Rank the candidates on all recordings, and cross-validate the choice on each in turn."""
-    measured = {variant: mean_over_recordings(rows.values()) for variant, rows in tables.items()}
+    """Rank the candidates on all places, and cross-validate the choice at each in turn."""
+    measured = {variant: _mean(rows.values()) for variant, rows in tables.items()}
     ranked = sorted(
         ((variant, found, float(cost(found))) for variant, found in measured.items()),
         key=lambda row: row[2],
     )
-    best = cost(bootstrap(tables[ranked[0][0]].values(), seed))
-    before = cost(bootstrap(tables[baseline].values(), seed))
+    best = cost(resampled_means(list(tables[ranked[0][0]].values()), seed, even=True))
+    before = cost(resampled_means(list(tables[baseline].values()), seed, even=True))
     return Tuning(
         baseline,
         tuple(ranked),
-        tuple(_fold(tables, baseline, source) for source in tables[baseline]),
+        {variant: _intervals(rows.values(), seed) for variant, rows in tables.items()},
+        tuple(_fold(tables, baseline, place, seed) for place in tables[baseline]),
         float(100.0 * np.mean(best < before)),
     )
 
 
-def _fold(tables: Mapping[Variant, Tables], baseline: Variant, left_out: Source) -> Fold:
-    there = {variant: mean_over_recordings([t[left_out]]) for variant, t in tables.items()}
+def _fold(tables: Mapping[Variant, Tables], baseline: Variant, left_out: str, seed: int) -> Fold:
+    there = {variant: _mean([t[left_out]]) for variant, t in tables.items()}
     elsewhere = {
-        variant: float(
-            cost(mean_over_recordings(rows for source, rows in t.items() if source != left_out))
-        )
+        variant: float(cost(_mean(rows for place, rows in t.items() if place != left_out)))
         for variant, t in tables.items()
     }
     chosen = min(elsewhere, key=elsewhere.__getitem__)
@@ -135,29 +131,51 @@ def _fold(tables: Mapping[Variant, Tables], baseline: Variant, left_out: Source)
         left_out,
         chosen,
         there[chosen],
+        _intervals([tables[chosen][left_out]], seed),
         float(cost(there[chosen])),
         float(cost(there[baseline])),
         min(float(cost(measures)) for measures in there.values()),
     )
 
 
-def figures(tuning: Tuning, names: Mapping[Source, str]) -> dict[str, Any]:
+def _mean(samples: Iterable[Sample]) -> Floats:
+    """The mean over places, which all have the same weight."""
+    return means_of(list(samples), even=True)
+
+
+def _intervals(samples: Iterable[Sample], seed: int) -> Sequence[Interval]:
+    """The intervals of the mean over places."""
+    taken = list(samples)
+    return interval_of(resampled_means(taken, seed, even=True), taken)
+
+
+def figures(tuning: Tuning) -> dict[str, Any]:
     """All candidates and folds, ready for JSON."""
     return {
         "candidates": [
-            {"settings": dict(variant.settings), "cost": cost, **named(measures)}
+            {
+                "settings": dict(variant.settings),
+                "cost": cost,
+                **named(measures),
+                "intervals": _named(tuning.intervals[variant]),
+            }
             for variant, measures, cost in tuning.ranked
         ],
         "folds": [
             {
-                "left_out": names[fold.left_out],
+                "left_out": fold.left_out,
                 "chosen": dict(fold.chosen.settings),
                 "cost": fold.cost,
                 "baseline_cost": fold.baseline_cost,
                 "least_cost": fold.least_cost,
                 **named(fold.measures),
+                "intervals": _named(fold.intervals),
             }
             for fold in tuning.folds
         ],
         "confidence_percent": tuning.confidence_percent,
     }
+
+
+def _named(intervals: Sequence[Interval]) -> dict[str, list[float]]:
+    return {m.name: list(bounds) for m, bounds in zip(MEASURES, intervals, strict=True)}

@@ -4,11 +4,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Final
 
+from esplanade.evaluation.measures import pieces, table
 from esplanade.evaluation.rules import Rules
 from esplanade.evaluation.runner import TrialResult
 from esplanade.evaluation.settings import DEFAULTS
-from esplanade.evaluation.studies.measures import Floats, table
 from esplanade.evaluation.trials import Source, Trial, plan_trials
+from esplanade.stats import Sample
 
 OURS: Final = "esplanade"
 LIMIT: Final = "max_acceleration_mps2"
@@ -41,8 +42,8 @@ class Variant:
 GIVEN: Final = frozenset({"radius_m", "speed_mps", "max_speed_mps"})
 """The rules give these parameters if no setting does, so their defaults are not the actor's."""
 
-Tables = Mapping[Source, Floats]
-"""The results of one variant: for each recording, the measures (E, M) of its episodes."""
+Tables = Mapping[str, Sample]
+"""The results of one variant: for each place, the measures of the episodes there."""
 
 
 def trials_of(
@@ -58,10 +59,22 @@ def trials_of(
     ]
 
 
-def tables_of(results: Sequence[TrialResult]) -> dict[Variant, Tables]:
-    """The measures of every variant on every recording."""
-    found: dict[Variant, dict[Source, Floats]] = {}
+def tables_of(
+    results: Sequence[TrialResult], places: Mapping[Source, str]
+) -> dict[Variant, Tables]:
+    """The measures of every variant at every place, whose recordings count as one."""
+    found: dict[Variant, dict[str, list[TrialResult]]] = {}
     for result in results:
         variant = Variant(result.trial.rules, result.trial.settings)
-        found.setdefault(variant, {})[result.trial.source] = table(result.scores)
-    return dict(found)
+        at = found.setdefault(variant, {})
+        at.setdefault(places[result.trial.source], []).append(result)
+    return {
+        variant: {place: _sample(there) for place, there in at.items()}
+        for variant, at in found.items()
+    }
+
+
+def _sample(results: Sequence[TrialResult]) -> Sample:
+    values = [row for result in results for row in table(result.scores)]
+    labels = [(k, piece) for k, result in enumerate(results) for piece in pieces(result.scores)]
+    return Sample.of(values, labels)

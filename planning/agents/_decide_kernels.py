@@ -232,12 +232,14 @@ def decide(
             ux, uy = control_toward(task, path[SUB, 0], path[SUB, 1], world.step_s)
         contact = p["radius_m"] + (world.person_radius_m + p["person_room_m"])
         dodged = False
+        away = metres_left(potential, task, task.cell, task.x, task.y)
         if rules["checks_steps"]:
-            ux, uy, dodged = last_check(world, prediction, task, need, contact, listed, ux, uy)
+            ux, uy, dodged = last_check(
+                world, prediction, task, need, contact, away, listed, ux, uy
+            )
         wx, wy = limited(task, ux, uy, tick_s)
         out.wishes[a, 0] = wx
         out.wishes[a, 1] = wy
-        away = metres_left(potential, task, task.cell, task.x, task.y)
         lost = slot >= 0 and not np.isfinite(potential_at(potential, task.cell, task.x, task.y))
         if status == NO_PATH and not lost:  # inside something no path leads out of
             lost = clearance_at(world.grid, task.body, task.cell, task.x, task.y) < 0.0
@@ -365,7 +367,7 @@ def _lead_out(
     p = agents.parameters[a]
     contact = p["radius_m"] + (world.person_radius_m + p["person_room_m"])
     ux, uy = control_toward(task, path[SUB, 0], path[SUB, 1], world.step_s)
-    ux, uy, dodged = last_check(world, prediction, task, -np.inf, contact, listed, ux, uy)
+    ux, uy, dodged = last_check(world, prediction, task, -np.inf, contact, np.inf, listed, ux, uy)
     wx, wy = limited(task, ux, uy, tick_s)
     out.wishes[a, 0] = wx
     out.wishes[a, 1] = wy

@@ -113,12 +113,13 @@ def _gap(
     near: NDArray[np.int64],
     task: Task,
     need: float,
+    seconds: float,
     ux: float,
     uy: float,
 ) -> float:
-    """`_separation` while turning to velocity u; -inf where a wall is."""
+    """`_separation` in so many seconds while turning to velocity u; -inf where a wall is."""
     rules = world.rules[0]
-    half = 0.5 * rules["look_ahead_s"]
+    half = 0.5 * seconds
     touching_m = task.radius_m + (world.person_radius_m + rules["sway_m"])
     closing_s = task.contact_closing_s
     a = task.max_acceleration_mps2
@@ -140,6 +141,23 @@ def _gap(
     )
 
 
+@inlined
+def _seconds_to_check(
+    task: Task, left_m: float, look_ahead_s: float, ux: float, uy: float
+) -> float:
+    """Seconds for which people must keep clear of an actor that goes on at velocity u.
+
+    They end where the actor stands at its goal: from then on it may evade whoever comes, and people
+    who come later keep it from nothing. Half of the time of braking counts, since while the actor
+    brakes it goes half as far as at its speed.
+    """
+    speed = np.hypot(ux, uy)
+    if task.hold or speed == 0.0:
+        return look_ahead_s
+    there_s = max(0.0, left_m - task.goal_tolerance_m) / speed
+    return float(min(look_ahead_s, there_s + 0.5 * speed / task.max_acceleration_mps2))
+
+
 @borrowing
 def last_check(
     world: World,
@@ -147,6 +165,7 @@ def last_check(
     task: Task,
     need: float,
     contact_m: float,
+    left_m: float,
     listed: NDArray[np.int64],
     ux: float,
     uy: float,
@@ -156,11 +175,14 @@ def last_check(
     `need` is the distance that evasions keep from walls; a wish comes from a path that does, and
     `walk` slides along what it only just meets. Evasions are stopping and sixteen directions at
     two speeds; the third value tells whether they were tried because of people, not only of walls.
-    `listed` is room for all people.
+    With `left_m` metres left to its goal the wish is checked until it is there, evasions as long as
+    the rules say. `listed` is room for all people.
     Costs O(people) once and O(people near) for each evasion.
     """
     near = listed[: _people_near(world, prediction, task, listed)]
-    gap = _gap(world, prediction, near, task, -np.inf, ux, uy)
+    look_ahead_s = world.rules[0]["look_ahead_s"]
+    seconds = _seconds_to_check(task, left_m, look_ahead_s, ux, uy)
+    gap = _gap(world, prediction, near, task, -np.inf, seconds, ux, uy)
     if gap >= contact_m:
         return ux, uy, False
     best = min(gap, contact_m) - 1e-6
@@ -174,7 +196,8 @@ def last_check(
             angle = ((n - 1) // 2) * np.pi / 8.0
             vx = speed * np.cos(angle)
             vy = speed * np.sin(angle)
-        gap = min(_gap(world, prediction, near, task, need, vx, vy), contact_m + 0.1)
+        gap = _gap(world, prediction, near, task, need, look_ahead_s, vx, vy)
+        gap = min(gap, contact_m + 0.1)
         if gap == -np.inf:
             continue
         score = gap - 0.02 * np.hypot(vx - ux, vy - uy)

@@ -603,9 +603,10 @@ class RuleModel(BaseModel):
             "s",
             0.05,
             5.0,
-            "The last check before a step looks this far ahead, in two halves.",
+            "The last check before a step looks this far ahead, in two halves, but no further than "
+            "until the actor stands at its goal.",
         ),
-    ] = 0.6
+    ] = 1.0
     people_near_m: Annotated[
         float,
         _rule("steps", "m", 0.5, 50.0, "People further away than this cannot be met in that time."),

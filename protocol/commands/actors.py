@@ -60,6 +60,9 @@ class NewActor(BaseModel):
     behaviour: dict[str, Any] = Field(default_factory=lambda: {"kind": "wander"})
     tags: Annotated[tuple[str, ...], Field(max_length=8)] = ()
     overrides: Annotated[dict[ParameterName, Number], Field(max_length=64)] = {}
+    look: dict[str, int] = Field(
+        {}, max_length=8, description="What it wears, by the parts of the protocol's looks."
+    )
     place: tuple[Metres, Metres, Metres] | None = Field(
         None, description="Where it comes in; None for a free place."
     )

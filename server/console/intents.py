@@ -189,6 +189,7 @@ def _newcomers(command: AddActors, state: OperatedState, pending: Facts) -> Fact
                 behaviour=new.behaviour,
                 tags=new.tags,
                 overrides=own,
+                look=new.look,
                 place=new.place,
                 near=command.count is not None and new.place is not None,
             )

@@ -318,7 +318,8 @@ class Reception:
                 due = max(due + BATCH_S, loop.time())
                 await asyncio.sleep(due - loop.time())
                 if self._reading is not None:
-                    self._reading.poll()
+                    self._reading.deliver()
+                    self._reading.tell_heard()
                 await self.views.send()
         finally:
             self._moderated.turns_out.remove(self._turn_out)

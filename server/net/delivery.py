@@ -1,6 +1,6 @@
 """Delivery tells everyone the news of a tick, in one pass that never waits."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -34,6 +34,12 @@ class Delivery:
         self._census_period = tick_rate
         self._stop_watching = stop_watching
         self._packing = Packing()
+        self._found: list[Session | None] = []
+        """The sessions of the viewers of the latest tick, by place."""
+        self._outboxes: dict[int, Outbox] = {}
+        self._flags = bytearray()
+        """Whether each of them may be sent a snapshot past its transport; outboxes keep it."""
+        self._descriptors = np.empty(0, dtype=np.int64)
 
     def deliver(self, news: News, now: float) -> None:
         """Write doors first, then the census, changes of view, snapshots, and then plans."""
@@ -75,16 +81,11 @@ class Delivery:
         packed, ends = self._packing.pack(snapshots)
         begins, step_begins = _begins(ends), _begins(snapshots.step_ends)
         steps = snapshots.step_ends - step_begins
+        self._find_sessions(snapshots.viewers)
         written: list[int] = []
-        free: list[int] = []
-        outboxes: list[Outbox] = []
-        for place, session in enumerate(map(self._sessions.get, snapshots.viewers)):
-            if session is None:
-                continue
-            outbox = session.outbox
-            if outbox.direct != NONE and (outbox.empty or outbox.look()):
-                free.append(place)
-                outboxes.append(outbox)
+        for place in np.flatnonzero(~self._clear()).tolist():
+            outbox = self._outboxes.get(place)
+            if outbox is None or outbox.look():
                 continue
             if census:
                 outbox.offer(census)
@@ -92,21 +93,50 @@ class Delivery:
             before = first.get(snapshots.viewers[place], ())
             if outbox.snapshot(block, int(steps[place]), now, before):
                 written.append(place)
-        if free:
-            ids = [snapshots.viewers[place] for place in free]
-            heads = {k: first[viewer] for k, viewer in enumerate(ids) if viewer in first}
+        free = np.flatnonzero(self._clear())
+        if len(free):
+            heads = self._heads(snapshots.viewers, first)
             number = len(free) + int(np.count_nonzero(steps[free])) + sum(map(len, heads.values()))
             joined = dict.fromkeys(range(len(free)), census) if census else {}
             for k, parts in heads.items():
                 joined[k] = b"".join((census, *parts))
-            direct = [outbox.direct for outbox in outboxes]
-            size, left = send_to_all(direct, packed, begins[free], ends[free], joined)
+            size, left = send_to_all(
+                self._descriptors[free], packed, begins[free], ends[free], joined
+            )
             for k, rest in left.items():
-                outboxes[k].send_rest(rest)
+                self._outboxes[int(free[k])].send_rest(rest)
             if census:
                 number += len(free)
-            outboxes[0].count(number, size, int(steps[free].sum()))
-        self._audience.wrote(snapshots, written + free)
+            self._outboxes[int(free[0])].count(number, size, int(steps[free].sum()))
+        self._audience.wrote(snapshots, [*written, *free.tolist()])
+
+    def _find_sessions(self, viewers: Sequence[int]) -> None:
+        """Find the sessions of these viewers, and have their outboxes tell which are clear.
+
+        Viewers are mostly those of the tick before: then no session is touched.
+        """
+        found = list(map(self._sessions.get, viewers))
+        if found == self._found:
+            return
+        self._found, self._flags = found, bytearray(len(found))
+        self._descriptors = np.full(len(found), NONE, dtype=np.int64)
+        self._outboxes = {
+            place: session.outbox for place, session in enumerate(found) if session is not None
+        }
+        for place, outbox in self._outboxes.items():
+            self._descriptors[place] = outbox.report_to(self._flags, place)
+
+    def _clear(self) -> npt.NDArray[np.bool_]:
+        """Whether the viewer at each place is sent its snapshot past its transport."""
+        return np.frombuffer(self._flags, dtype=np.bool_)
+
+    def _heads(
+        self, viewers: Sequence[int], first: Mapping[int, list[bytes]]
+    ) -> dict[int, list[bytes]]:
+        """Of those who are clear, by their place among these, what comes before the snapshot."""
+        rank = self._clear().cumsum() - 1
+        places = [place for place, viewer in enumerate(viewers) if viewer in first]
+        return {int(rank[place]): first[viewers[place]] for place in places if self._flags[place]}
 
     def _plans(self, news: News) -> None:
         """Offer the plans in the news, each packed once, to those who watch and see the actor."""

@@ -6,6 +6,7 @@ packed here without their pydantic models; the tests hold both encodings togethe
 
 import struct
 from collections.abc import Sequence
+from functools import lru_cache
 from typing import Final
 
 import msgpack
@@ -41,6 +42,12 @@ def leave(tick: int, ids: Sequence[int]) -> bytes:
 
 def enter(tick: int, entities: Sequence[bytes]) -> bytes:
     """An enter message from avatars that `esplanade.protocol.entities` has packed."""
+    return frame(b"".join((_enter_head(tick), _array_head(len(entities)), *entities)))
+
+
+@lru_cache(maxsize=1)
+def _enter_head(tick: int) -> bytes:
+    """The bytes of an enter message before the array of avatars, the same for all of a tick."""
     packer = msgpack.Packer(autoreset=False)
     packer.pack_array_header(2)
     packer.pack(int(ServerCode.ENTER))
@@ -48,5 +55,13 @@ def enter(tick: int, entities: Sequence[bytes]) -> bytes:
     packer.pack("tick")
     packer.pack(tick)
     packer.pack("entities")
-    packer.pack_array_header(len(entities))
-    return frame(packer.bytes() + b"".join(entities))
+    head: bytes = packer.bytes()
+    return head
+
+
+@lru_cache(maxsize=256)
+def _array_head(count: int) -> bytes:
+    packer = msgpack.Packer(autoreset=False)
+    packer.pack_array_header(count)
+    head: bytes = packer.bytes()
+    return head

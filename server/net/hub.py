@@ -71,7 +71,7 @@ class Hub:
         self._world = world
         self._audience = audience
         self._routes = route_requests
-        self._pending = PendingInputs(metrics)
+        self._pending = PendingInputs(metrics, self._unread)
         self._seating = Seating(
             world,
             audience,
@@ -88,7 +88,7 @@ class Hub:
         )
         self.sessions = self._seating.sessions
         """Sessions that have been welcomed, by their avatar's id."""
-        self._leases = Leases(world.moves)
+        self._leases = Leases(world.moves, self._listen)
         self.reading: Reading | None = None
         """Reads what people send, where the event loop alone does not."""
         self._operator_keys = OperatorKeys(settings.operator_key.get_secret_value(), metrics)
@@ -316,7 +316,7 @@ class Hub:
         For a `still` tick, in which nobody moves, movements wait for the next one.
         """
         if self.reading is not None:
-            self.reading.poll()
+            self.reading.deliver()
         self._seating.end_waiting(self._run_for_s(now))
         self._check_leases(now)
         self._walk_outs.check(now)
@@ -338,6 +338,18 @@ class Hub:
             farewell = frames.message(Bye(reason=ByeCode.SILENT, text=text))
             self.depart(session, comes_back=True)
             session.dismiss(farewell, CloseCode.SILENT, ByeCode.SILENT.value)
+
+    def _listen(self) -> None:
+        if self.reading is not None:
+            self.reading.tell_heard()
+
+    def _unread(self) -> int:
+        """Movements of these sessions that wait where they were read."""
+        return (
+            0
+            if self.reading is None
+            else sum(map(self.sessions.__contains__, self.reading.waiting()))
+        )
 
     def _frames_waiting(self) -> int:
         return sum(session.outbox.waiting for session in self.sessions.values())

@@ -63,8 +63,12 @@ class Lease:
 class Leases:
     """Looks at all clients now and then; `moves` tells whether an avatar means to move."""
 
-    def __init__(self, moves: Callable[[int], bool]) -> None:
+    def __init__(
+        self, moves: Callable[[int], bool], listen: Callable[[], None] = lambda: None
+    ) -> None:
+        """`listen` is called before a pass; connections know then what was heard of them."""
         self._moves = moves
+        self._listen = listen
         self._checked_s: float | None = None
 
     def check(self, leases: Iterable[tuple[int, Lease]], now: float) -> tuple[list[int], list[int]]:
@@ -78,6 +82,7 @@ class Leases:
             return lapsed, gone
         self._checked_s = now
         listened_s = min(elapsed_s, 2.0 * CHECK_S)
+        self._listen()
         for avatar_id, lease in leases:
             connection = lease.connection
             if connection.heard:

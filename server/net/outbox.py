@@ -57,12 +57,9 @@ class Outbox:
         self._connection = connection
         self._transport = connection.transport
         self._descriptor = descriptor
-        self.direct = NONE
-        """The descriptor to which the next snapshot may be sent past the transport, once that is
-        known to be `empty`; `NONE` where anything is unusual. A snapshot that was written as usual
-        sets it."""
-        self.empty = False
-        """Whether the transport is known to hold nothing back; see `look`."""
+        self._usual = False
+        """Whether the latest snapshot was written in the usual way and nothing waits since."""
+        self._clear, self._place = bytearray(1), 0
         self.unsent = connection.transport.get_write_buffer_size
         """Returns the bytes that were written and that the client has not taken yet."""
         self._policy = policy
@@ -85,30 +82,48 @@ class Outbox:
         """Whether anything may be written."""
         return self._connection.state is State.OPEN and self.dropped is None
 
+    @property
+    def clear(self) -> bool:
+        """Whether the next snapshot may be sent past the transport, as far as is known."""
+        return bool(self._clear[self._place])
+
     def use_transport(self) -> None:
         """Write everything by the transport from now on, as the connection is closing."""
-        self._descriptor = self.direct = NONE
+        self._descriptor = NONE
+        self._be_unusual()
+
+    def report_to(self, clear: bytearray, place: int) -> int:
+        """Keep there, from now on, whether a snapshot may be sent past the transport; see `look`.
+
+        Returns the descriptor to which it may be sent then.
+        """
+        clear[place] = self._clear[self._place]
+        self._clear, self._place = clear, place
+        return self._descriptor
 
     def look(self) -> bool:
-        """Find out whether the transport holds nothing back and is not closing.
+        """Find out whether the next snapshot may be sent past the transport.
 
-        That stays so until something is written to it, which whoever does so must tell (`fill`).
+        It may if nothing waits, and the transport holds nothing back and is not closing. That stays
+        so until something is written to the transport, which whoever does so must tell (`fill`).
         """
-        self.empty = not self.unsent() and not self._transport.is_closing()
-        return self.empty
+        known = self._usual and self._descriptor != NONE
+        is_clear = known and not self.unsent() and not self._transport.is_closing()
+        self._clear[self._place] = is_clear
+        return is_clear
 
     def fill(self) -> None:
         """Note that something was written to the transport."""
-        self.empty = False
+        self._clear[self._place] = False
 
     def send_rest(self, rest: bytes) -> None:
         """Write what the system did not take at once of a snapshot that was sent."""
-        self.empty = False
+        self.fill()
         self._transport.write(rest)
 
     def welcome(self, frame: bytes) -> None:
         """The first frame, however large: its size and the time to read it are granted."""
-        self.direct = NONE
+        self._be_unusual()
         self._allowance_bytes = len(frame)
         self._patience_s = max(self._policy.drop_seconds, JOINING_PATIENCE_S)
         if self.open:
@@ -125,7 +140,7 @@ class Outbox:
         if not self._waiting and self.unsent() <= self._policy.slow_bytes:
             self._write(frame)
         elif len(self._waiting) < MAX_WAITING_FRAMES:
-            self.direct = NONE
+            self._be_unusual()
             self._waiting.append(frame)
         else:
             self._drop("waiting")
@@ -144,7 +159,7 @@ class Outbox:
         called once a tick. The frames in `first` must not be lost; they wait while the client is
         slow. False if steps and snapshot were left out, both together.
         """
-        self.direct = NONE
+        self._be_unusual()
         if not self.open:
             return False
         unsent = self.unsent()
@@ -187,10 +202,9 @@ class Outbox:
             messages += len(first)
         if steps:
             messages += 1
-        self.empty = False
         self._transport.write(block)
         self.count(messages, len(block), steps)
-        self.direct = self._descriptor
+        self._usual = True
 
     def count(self, messages: int, size: int, steps: int) -> None:
         """Count what was sent, to whomever, of so many bytes."""
@@ -220,8 +234,13 @@ class Outbox:
         self._waiting.clear()
         self._transport.abort()
 
+    def _be_unusual(self) -> None:
+        """Have the next snapshot written to the transport."""
+        self._usual = False
+        self.fill()
+
     def _write(self, frame: bytes) -> None:
-        self.empty = False
+        self.fill()
         self._transport.write(frame)
         self._traffic.messages_out += 1
         self._traffic.bytes_out += len(frame)

@@ -1,6 +1,6 @@
 """Inputs of people until the next tick: movements, gestures, doors, comings and goings."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
@@ -27,7 +27,8 @@ class PendingInputs:
     The number of people and that of doors bound all of it.
     """
 
-    def __init__(self, metrics: Metrics) -> None:
+    def __init__(self, metrics: Metrics, unread: Callable[[], int] = lambda: 0) -> None:
+        """`unread` counts movements that wait elsewhere, and that only the next tick brings."""
         self._metrics = metrics
         self._comings: list[Attach | Detach | Leave | Stand] = []
         self._movements: dict[int, Movement] = {}
@@ -40,7 +41,7 @@ class PendingInputs:
         metrics.gauge(
             "movements_waiting",
             "Movements that wait for the next tick",
-            lambda: len(self._movements) + len(self._steers),
+            lambda: self._number + unread(),
         )
 
     def come(self, *comings: Attach | Detach | Leave | Stand) -> None:
@@ -55,13 +56,12 @@ class PendingInputs:
 
     def steer(self, wishes: Mapping[int, tuple[int, float, float]]) -> None:
         """Keep movements by the avatar's id; they take the places of earlier ones."""
-        before = len(self._movements) + len(self._steers)
+        before = self._number
         if self._movements:
             for avatar_id in self._movements.keys() & wishes.keys():
                 del self._movements[avatar_id]
         self._steers.update(wishes)
-        now = len(self._movements) + len(self._steers)
-        self._metrics.traffic.movements_superseded += before + len(wishes) - now
+        self._metrics.traffic.movements_superseded += before + len(wishes) - self._number
 
     def move_door(self, wish: MoveDoor) -> None:
         """Keep a wish for a door; the latest wins."""
@@ -95,6 +95,10 @@ class PendingInputs:
         self._presences.pop(avatar_id, None)
         self._gestures.pop(avatar_id, None)
         self._looks.pop(avatar_id, None)
+
+    @property
+    def _number(self) -> int:
+        return len(self._movements) + len(self._steers)
 
     def _drop(self, avatar_id: int) -> bool:
         """Forget a movement; whether there was one."""

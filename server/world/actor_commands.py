@@ -70,7 +70,7 @@ class ActorCommands:
 
     def restore(self, specs: Iterable[ActorSpec]) -> None:
         """Know these actors, and no others: those of a zone that goes on after a restart."""
-        self._effects.specs = {spec.id: spec for spec in specs}
+        self._effects.restore(specs)
 
     def wait(self, commands: Iterable[ActorCommand]) -> None:
         """Let these commands wait, the longest first, and no others."""

@@ -10,6 +10,7 @@ from esplanade.actors import Explanation, ObservedPeople, Outcome, Population
 from esplanade.actors.blockers import Blocker
 from esplanade.actors.locomotion.footsteps.course import planned_places
 from esplanade.planning import Body
+from esplanade.protocol.looks import NO_LOOK, Look
 from esplanade.server.world.frame import Line
 from esplanade.server.world.inputs import PlanEvery, PotentialDerived
 from esplanade.server.world.routes import Point
@@ -31,6 +32,7 @@ class ActorAvatars:
         self._tick_s = tick_s
         self._population = population
         self._names = dict(names)
+        self._looks: dict[Hashable, Look] = {}
         self._avatars: dict[Hashable, int] = {}
         self._actor_ids: dict[int, Hashable] = {}
         self._slots: Slots = np.zeros(0, dtype=np.int64)
@@ -151,6 +153,13 @@ class ActorAvatars:
         """Set the name that others see of an actor which comes into the world next."""
         self._names[actor_id] = name
 
+    def wear(self, actor_id: Hashable, look: Look) -> None:
+        """Let an actor look like this from now on, or from when it comes into the world."""
+        self._looks[actor_id] = look
+        avatar_id = self._avatars.get(actor_id)
+        if avatar_id is not None:
+            self._state.looks[self._state.slot(avatar_id)] = look
+
     def avatar(self, actor_id: Hashable) -> int | None:
         """The avatar of an actor, by its id; None if it is not in the world yet."""
         return self._avatars.get(actor_id)
@@ -164,6 +173,7 @@ class ActorAvatars:
         left = []
         for actor_id in ids:
             self._names.pop(actor_id, None)
+            self._looks.pop(actor_id, None)
             avatar_id = self._avatars.pop(actor_id, None)
             if avatar_id is None:  # it came and went between two plans
                 continue
@@ -256,6 +266,7 @@ class ActorAvatars:
             float(agents.parameters["radius_m"][row]),
             had,
         )
+        self._state.looks[slot] = self._looks.get(actor_id, NO_LOOK)
         avatar_id = int(self._state.ids[slot])
         self._avatars[actor_id] = avatar_id
         self._actor_ids[avatar_id] = actor_id

@@ -19,6 +19,7 @@ from esplanade.server.world.inputs import (
     SetParameters,
     parts_of,
 )
+from esplanade.server.world.looks import look_of
 from esplanade.server.world.routes import Point
 
 
@@ -35,8 +36,14 @@ class CommandEffects:
         self._population = population
         self._avatars = avatars
         self._want_door = want_door
-        self.specs: dict[Hashable, ActorSpec] = {spec.id: spec for spec in roster}
+        self.specs: dict[Hashable, ActorSpec] = {}
         """The specification of each actor; its behaviour is the latest that it was given."""
+        self.restore(roster)
+
+    def restore(self, specs: Iterable[ActorSpec]) -> None:
+        """Know these actors, and no others."""
+        self.specs = {spec.id: spec for spec in specs}
+        self._wear(self.specs)
 
     def undo_point(self) -> Callable[[], None]:
         """Return a call that puts actors and their specifications back."""
@@ -88,11 +95,20 @@ class CommandEffects:
             case AddActors():
                 for spec in command.specs:
                     self._avatars.name(spec.id, spec.name)
+                self._wear(spec.id for spec in command.specs)
             case RemoveActors():
                 return self._avatars.remove(command.actors)
             case PlaceActor():
                 self._avatars.put(command.actor)
+            case ChangeBehaviour() | SendActors():
+                self._wear(command.actors)
         return []
+
+    def _wear(self, actors: Iterable[Hashable]) -> None:
+        """Show these actors as they are specified, which depends on what they do."""
+        for actor in actors:
+            if actor in self.specs:
+                self._avatars.wear(actor, look_of(self.specs[actor]))
 
     def _add(self, command: AddActors, places: Sequence[Point]) -> None:
         found: Sequence[Point | None] = places or [spec.place for spec in command.specs]

@@ -103,12 +103,12 @@ class ExactState:
         p.state.load(saved["avatars"], names)
         behaviours: dict[Hashable, Behaviour] = {spec.id: spec.behaviour.make() for spec in specs}
         p.population.load_exactly(saved["actors"], behaviours)
-        p.commands.restore(specs)
         commands = saved["commands"]
         p.commands.derived_outside = bool(commands["outside"])
         waiting = [cast(ActorCommand, plain_command(each)) for each in commands["waiting"]]
         p.commands.wait(waiting)
         p.avatars.load(saved["shown"])
+        p.commands.restore(specs)
         p.people.load(saved["people"])
         p.persons.load(saved["people"]["watched"])
         load_chance(p.spawning.random, saved["chance"])

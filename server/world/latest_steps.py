@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from esplanade.protocol.steps import StepRecords, new_step_records
-from esplanade.server.world.record_rows import record_rows
+from esplanade.server.world.record_rows import put_rows, record_rows
 from esplanade.server.world.state import Slots
 
 
@@ -22,7 +22,7 @@ class LatestSteps:
 
     def begin(self, slots: Slots, records: StepRecords, tick: int) -> None:
         """Write the steps, STEP (N,), that the avatars in these slots, (N,), begin."""
-        self.records[slots] = records
+        put_rows(self.records, slots, records)
         self.begun[slots] = tick
 
     def save(self, slots: Slots) -> dict[str, Any]:
@@ -43,5 +43,5 @@ class LatestSteps:
 
     def begun_in(self, tick: int, slots: Slots) -> StepRecords:
         """The steps that avatars in these slots began in a tick, STEP (N,)."""
-        steps: StepRecords = self.records[slots[self.begun[slots] == tick]]
+        steps: StepRecords = record_rows(self.records, slots[self.begun[slots] == tick])
         return steps

@@ -1,8 +1,19 @@
-"""The looks of avatars: what people have chosen, and the bodies that follow from it."""
+"""The looks of avatars: those of actors, what people have chosen and the bodies that follow."""
 
+from typing import Final
+
+from esplanade.actors import ActorSpec
 from esplanade.actors.locomotion.body.traits import traits_of
 from esplanade.protocol.looks import Look
 from esplanade.server.world.state import State
+
+GUIDE: Final = "guide"
+"""The kind of behaviour of those who carry a sign."""
+
+
+def look_of(spec: ActorSpec) -> Look:
+    """The look of an actor: what it wears, and the sign of one that guides people."""
+    return Look(**spec.look.model_dump(), sign=int(spec.behaviour.kind == GUIDE))
 
 
 class Looks:

@@ -123,7 +123,7 @@ def test_a_search_goes_on_from_a_path_that_somebody_has_crossed() -> None:
             rules=RuleModel(**rules),
         )
         for k, (start, goal) in enumerate(ways):
-            nav.add_actor(k, start, goal)
+            nav.add_actor(k, start, goal, ActorParameters(catch_up=0.2))
         found = 0
         for _ in range(50):
             nav.observe({})

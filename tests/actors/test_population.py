@@ -76,7 +76,7 @@ def test_a_guide_waits_for_who_falls_behind_and_goes_on(population) -> None:
 
 
 def test_a_guide_goes_on_when_its_follower_has_left(population) -> None:
-    guide = Guide([(10.0, 6.0, 0)], join_m=2.0, lag_m=3.5, join_after_s=1.0, patience_s=60.0)
+    guide = Guide([(10.0, 6.0, 0)], join_m=2.0, lag_m=3.5, join_after_s=0.5, patience_s=60.0)
     population.add("guide", guide, BODY, position=(2.0, 6.0))
     play(population, 6.0, {"ann": along((1.0, 6.0), (1.0, 6.0))})
     assert guide.waiting

@@ -123,6 +123,18 @@ def test_a_person_who_will_come_to_the_goal_keeps_nobody_from_it(way, speed_mps,
     assert record.nearest_person("a") > CONTACT_M + 0.1
 
 
+@pytest.mark.parametrize("lag", [-0.6, -0.3, 0.0, 0.3, 0.6])
+@pytest.mark.parametrize("way", [(0.0, 1.0), (0.6, 0.8), (-0.8, 0.6), (-1.0, 0.0)])
+def test_a_person_who_crosses_the_goal_while_the_actor_arrives_is_not_walked_into(way, lag) -> None:
+    """The last check ends where the actor stands at its goal, and not before."""
+    goal, there_s, speed_mps = np.array((8.0, 6.0)), 4.3 + lag, 1.2
+    ends = (goal - np.multiply(way, speed_mps * there_s), goal + np.multiply(way, 6.0))
+    person = along(*map(tuple, ends), speed_mps=speed_mps)
+    record = one(open_space(), (2.0, 6.0), (8.0, 6.0), 9.0, {"p": person})
+    assert record.nearest_person("a") > CONTACT_M + 0.1
+    assert record.arrival_s("a") < straight_s((2.0, 6.0), (8.0, 6.0)) + 2.0
+
+
 def corridor(width):
     walls = [((0.0, 5.0), (16.0, 5.0)), ((0.0, 5.0 + width), (16.0, 5.0 + width))]
     return open_space(walls=walls), 5.0 + width / 2

@@ -9,7 +9,7 @@ import pytest
 
 from esplanade.cli import main
 from esplanade.commandline import exit_codes
-from esplanade.evaluation import options, policies
+from esplanade.evaluation import measures, options, policies
 from tests.evaluation.worlds import busy_plaza, crowd, walk, write_csv
 
 
@@ -58,6 +58,41 @@ def test_every_episode_and_summary_is_in_the_json(tmp_path: Path, plaza: Path) -
     touched = [episode["people_touched"] > 0 for episode in found["episodes"]]
     assert summary["contacts_percent"] == pytest.approx(100 * sum(touched) / 6)
     assert [episode["number"] for episode in found["episodes"]] == list(range(6))
+
+
+def test_figures_have_intervals_and_policies_are_compared_on_the_same_episodes(
+    tmp_path: Path,
+    plaza: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(measures, "PIECE_S", 4.0)  # this recording is short
+    target = tmp_path / "all.json"
+    names = ["discs", "straight", "human"]
+    assert run(plaza, "--policy", *names, "--episodes", 20, "--json", target) == exit_codes.OK
+    shown = capsys.readouterr().out
+    found = json.loads(target.read_text())
+    for summary in found["summaries"]:
+        counts = {"recording", "policy", "episodes", "decision_max_ms", "intervals"}
+        assert summary["intervals"].keys() == summary.keys() - counts
+        for name, (low, high) in summary["intervals"].items():
+            assert low <= summary[name] <= high, name
+    straight = next(s for s in found["summaries"] if s["policy"] == "straight")
+    low, high = straight["intervals"]["contacts_percent"]
+    assert f"{straight['contacts_percent']:.1f} ({low:.1f} to {high:.1f})" in shown
+    assert "Differences from discs in the same episodes" in shown
+    compared = {(d["policy"], d["measure"]): d for d in found["differences"]}
+    assert {policy for policy, _ in compared} == {"straight", "human"}
+    contacts = compared["straight", "contacts_percent"]
+    by = {
+        policy: [e["people_touched"] > 0 for e in found["episodes"] if e["policy"] == policy]
+        for policy in names
+    }
+    difference = 100.0 * (sum(by["straight"]) - sum(by["discs"])) / 20
+    assert contacts["mean"] == pytest.approx(difference)
+    assert contacts["episodes"] == 20
+    # The pedestrian's own trip is no reversed one.
+    assert compared["human", "contacts_percent"]["episodes"] == len(by["human"]) < 20
 
 
 def test_episodes_that_did_not_arrive_have_no_time_in_the_json(tmp_path: Path) -> None:

@@ -13,7 +13,7 @@ from esplanade.protocol.codes import (
     MAX_NAME_CHARS,
     MAX_TOKEN_CHARS,
 )
-from esplanade.protocol.looks import MOST, SHORTEST_CM, Look
+from esplanade.protocol.looks import CHOSEN, MOST, SHORTEST_CM, Look
 from esplanade.protocol.messages import (
     Blocker,
     Bye,
@@ -61,11 +61,13 @@ places = st.tuples(floats, floats, floats)
 tokens = st.text(st.characters(codec="utf-8"), max_size=MAX_TOKEN_CHARS)
 numbers = st.integers(0, MAX_LINE_NUMBER)
 arguments = st.dictionaries(texts, texts | floats | st.booleans() | st.none(), max_size=3)
-looks = st.builds(
+chosen_looks = st.builds(
     Look,
-    **{name: st.integers(0, most) for name, most in zip(Look._fields[:-1], MOST, strict=False)},
+    **{name: st.integers(0, most) for name, most in zip(CHOSEN[:-1], MOST, strict=False)},
     stature_cm=st.just(0) | st.integers(SHORTEST_CM, MOST.stature_cm),
+    sign=st.just(0),
 )
+looks = st.builds(Look._replace, chosen_looks, sign=st.integers(0, MOST.sign))
 doors = st.dictionaries(texts, st.booleans(), max_size=3)
 
 
@@ -101,7 +103,7 @@ client_messages: st.SearchStrategy[FromClient] = st.one_of(
         at=st.none() | st.tuples(metres, metres, metres),
         operator=st.none() | tokens,
         steps=st.booleans(),
-        look=st.none() | looks,
+        look=st.none() | chosen_looks,
     ),
     st.builds(Move, seq=u32, direction=st.floats(-1000, 1000), speed=st.floats(0, 100)),
     st.builds(WalkTo, seq=u32, x=metres, y=metres, z=metres),
@@ -115,7 +117,7 @@ client_messages: st.SearchStrategy[FromClient] = st.one_of(
     ),
     st.builds(Report, id=u32, line=st.none() | numbers, text=lines(MAX_CHAT_CHARS)),
     st.builds(MutePerson, id=u32, muted=st.booleans()),
-    st.builds(ChooseLook, look=looks),
+    st.builds(ChooseLook, look=chosen_looks),
 )
 
 entities = st.builds(

@@ -26,7 +26,7 @@ from esplanade.protocol import codes as table
 from esplanade.protocol.codec import MAX_BLOCK_BYTES, SNAPSHOT_HEAD_BYTES, STEPS_HEAD_BYTES
 from esplanade.protocol.codes import ClientCode, CloseCode, ServerCode
 from esplanade.protocol.keys_between import FAR
-from esplanade.protocol.looks import MOST, SHORTEST_CM, Look
+from esplanade.protocol.looks import CHOSEN, MOST, SHORTEST_CM, Look
 from esplanade.protocol.messages import (
     Blocker,
     Circle,
@@ -153,7 +153,7 @@ def documented_type(kind: Any) -> str:
     if origin is dict or (isinstance(kind, type) and issubclass(kind, BaseModel)):
         return "map"
     if kind is Look:
-        return "array of six integers"
+        return "array of integers"
     if isinstance(kind, type) and issubclass(kind, int):
         return "integer"
     return "text"
@@ -181,8 +181,8 @@ def test_reasons_errors_and_close_codes() -> None:
 def test_the_parts_of_a_look() -> None:
     (parts,) = tables(section("Looks"))
     assert [(int(row["Place"]), row["Name"]) for row in parts] == list(enumerate(Look._fields))
-    ranges = [f"0 to {most}" for most in MOST[:-1]]
-    ranges.append(f"0, or {SHORTEST_CM} to {MOST.stature_cm}")
+    ranges = [f"0 to {most}" for most in MOST]
+    ranges[CHOSEN.index("stature_cm")] = f"0, or {SHORTEST_CM} to {MOST.stature_cm}"
     assert [row["Range"] for row in parts] == ranges
 
 

@@ -6,13 +6,21 @@ import pytest
 from esplanade.protocol import ErrorCode, ProtocolError, decode_client, encode
 from esplanade.protocol.codes import Kind
 from esplanade.protocol.entities import Entity, pack_constants, pack_entity
-from esplanade.protocol.looks import MOST, NO_LOOK, SHORTEST_CM, Look, checked_look, known_look
+from esplanade.protocol.looks import (
+    MOST,
+    NO_LOOK,
+    SHORTEST_CM,
+    Look,
+    checked_look,
+    known_look,
+    parts_of,
+)
 from esplanade.protocol.messages import ChooseLook, Hello
 
 
 @pytest.mark.parametrize(
     "look",
-    [NO_LOOK, MOST, Look(stature_cm=SHORTEST_CM), Look(1, 2, 3, 4, 5, 171)],
+    [NO_LOOK, MOST._replace(sign=0), Look(stature_cm=SHORTEST_CM), Look(1, 2, 3, 4, 5, 171)],
 )
 def test_a_look_comes_through(look: Look) -> None:
     for message in (ChooseLook(look=look), Hello(name="Ann", version=6, look=look)):
@@ -43,6 +51,14 @@ def test_a_part_that_does_not_exist_is_refused_by_its_name(look: object, fault: 
         decode_client(frame)
     assert error.value.code == ErrorCode.INVALID
     assert fault in error.value.text
+
+
+def test_a_sign_is_told_and_cannot_be_chosen() -> None:
+    guide = Look(shirt=3, sign=1)
+    assert known_look(parts_of(guide)) == guide
+    assert parts_of(Look(shirt=3)) == [3, 0, 0, 0, 0, 0]
+    with pytest.raises(ValueError, match="a look is the array"):
+        checked_look(parts_of(guide))
 
 
 def test_parts_of_later_versions_are_passed_over() -> None:

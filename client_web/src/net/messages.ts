@@ -32,7 +32,7 @@ export type ClientMessage =
 
 /**
  * Clothes, hair, skin and stature of an avatar, each a number; 0 is one that is not chosen, and
- * follows from the avatar's id.
+ * follows from the avatar's id. Guides have a sign, which is 1; nobody can choose one.
  */
 export type Look = readonly [
   shirt: number,
@@ -41,6 +41,7 @@ export type Look = readonly [
   hairColour: number,
   skin: number,
   statureCm: number,
+  sign?: number,
 ];
 
 /** The arguments of a sentence of the server, by names. */

@@ -3,10 +3,11 @@
 import { type Camera, Frustum, Group, Matrix4, MeshLambertMaterial, Sphere } from "three";
 import type { Side } from "../world/body";
 import type { Look } from "../net/messages";
+import { hasSign } from "../world/guides";
 import type { Avatar } from "../world/world";
 import { Instances } from "./instances";
 import { type Clothing, clothingOf } from "./clothing";
-import { ACTOR, IRON } from "./palette";
+import { ACTOR, GUIDE, IRON } from "./palette";
 import { type PartName, PARTS } from "./parts";
 
 /** Corners around a limb, of figures near by and far away. */
@@ -127,7 +128,7 @@ export class Figures {
 
 function placeParts(
   parts: PartMeshes,
-  { id, kind, animator, pose, radius }: Avatar,
+  { id, kind, look, animator, pose, radius }: Avatar,
   clothes: Clothing,
 ): void {
   const {
@@ -140,6 +141,7 @@ function placeParts(
   const { hairdo } = clothes;
   if (hairdo) parts[hairdo].put(id, clothes.hair, body.neck, body.head, trunkM);
   if (kind === "actor") parts.hat.put(id, ACTOR, body.neck, body.head, trunkM);
+  if (hasSign(look)) parts.sign.put(id, GUIDE, body.neck, body.head, trunkM);
   if (radius > FIGURE_WIDE_M) {
     const { x, y, z } = pose;
     parts.rail.put(id, IRON, { x, y, z: z + RAIL_UP_M }, LEVEL, radius);

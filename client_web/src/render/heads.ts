@@ -10,6 +10,7 @@ type HairName = "short" | "long" | "bun" | "curls";
 const EYE = new Color("#1d1a18");
 const BROW = new Color("#5d4a40");
 const LIPS = new Color("#b8736a");
+const POST = new Color("#3c4148");
 
 /** From the foot of the neck, in shares of the trunk. */
 export function head(corners: number): BufferGeometry {
@@ -114,6 +115,21 @@ export function hat(corners: number): BufferGeometry {
     ).map((curl) => sloped(curl, corners)),
   );
   return merge([crown, peak]);
+}
+
+/** The lantern that guides hold over their heads, to be found by from all sides. */
+export function sign(corners: number): BufferGeometry {
+  const round = (z: number, radius: number, color?: Color): Section =>
+    oval({ z, depth: radius, width: radius, ...(color && { color }) }, corners);
+  return skin([
+    round(0.36, 0.012, POST),
+    round(0.62, 0.012, POST),
+    round(0.62, 0.08),
+    round(0.68, 0.19),
+    round(0.9, 0.19),
+    round(0.96, 0.08),
+    round(0.98, 0.02, POST),
+  ]);
 }
 
 function sloped({ slope = 0, ...rest }: Curl, corners: number): Section {

@@ -16,6 +16,7 @@ export const BARK = new Color("#6b4f38");
 export const WATER = new Color("#4ea3c4");
 export const ACCENT = new Color("#ffc233");
 export const ACTOR = new Color("#0f9d92");
+export const GUIDE = new Color("#e0402f");
 
 const FACADES = ["#e2d3b8", "#d9b79a", "#c98f73", "#e8e0d0", "#b9c2c4", "#d7c7a0", "#cfa98c"];
 const LEAVES = ["#5f8f45", "#6f9f4c", "#4f7f40", "#7fa655"];

@@ -5,7 +5,7 @@
 
 import { type BufferGeometry, Color, Float32BufferAttribute, TorusGeometry } from "three";
 import { FOOT, FOREARM, SHIN, THIGH, UPPER_ARM } from "../world/skeleton";
-import { hair, hat, head } from "./heads";
+import { hair, hat, head, sign } from "./heads";
 import { type Section, loft, skin, WHITE } from "./loft";
 
 const BELT = new Color("#4a4038");
@@ -22,6 +22,7 @@ export const PARTS = {
   bun: (corners: number) => hair("bun", corners),
   curls: (corners: number) => hair("curls", corners),
   hat,
+  sign,
   upperArm,
   forearm,
   hand,

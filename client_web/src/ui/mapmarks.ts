@@ -1,11 +1,13 @@
 /** The moving things on a map: doors, people, actors, the path of a plan, and where the own camera looks. */
 
 import type { Doors, Plan, SceneData } from "../net/messages";
+import { hasSign } from "../world/guides";
 import type { Avatar } from "../world/world";
 import { stands } from "./floorplan";
 
 const PERSON = "#2563c9";
 const ACTOR = "#0b8279";
+const GUIDE = "#b3261e";
 const OWN = "#e08a00";
 const DOOR = "#a4551e";
 /** Avatars on other storeys are drawn with this opacity. */
@@ -52,10 +54,11 @@ export class MapMarks {
     pen.stroke();
   }
 
-  /** Somebody else: people are dots, actors are diamonds. `size` is 1 on a small map. */
-  other({ kind, pose }: Avatar, size: number): void {
+  /** Somebody else: people are dots, actors are diamonds, guides larger ones. `size` is 1 on a small map. */
+  other({ kind, pose, look }: Avatar, size: number): void {
     this.pen.globalAlpha = this.isHere(pose.z) ? 1 : ELSEWHERE;
-    if (kind === "actor") this.diamond(pose, 3.2 * size);
+    if (hasSign(look)) this.diamond(pose, 4.8 * size, GUIDE);
+    else if (kind === "actor") this.diamond(pose, 3.2 * size, ACTOR);
     else this.dot(pose, 2.6 * size, PERSON);
     this.pen.globalAlpha = 1;
   }
@@ -90,7 +93,7 @@ export class MapMarks {
     this.fill(color);
   }
 
-  private diamond(pose: { x: number; y: number }, halfPx: number): void {
+  private diamond(pose: { x: number; y: number }, halfPx: number, color: string): void {
     const [x, y] = this.at(pose.x, pose.y);
     const half = halfPx * this.fit.pixel;
     this.pen.beginPath();
@@ -99,7 +102,7 @@ export class MapMarks {
     this.pen.lineTo(x, y + half);
     this.pen.lineTo(x - half, y);
     this.pen.closePath();
-    this.fill(ACTOR);
+    this.fill(color);
   }
 
   private fill(color: string): void {

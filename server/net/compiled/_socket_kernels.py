@@ -42,8 +42,18 @@ class Fields(NamedTuple):
     speed: Bytes
 
 
+class Purses(NamedTuple):
+    """For each descriptor, the frames that are paid for and the latest movement, if one waits."""
+
+    frames: Ints
+    waits: Bytes
+    numbers: Ints
+    directions_rad: Floats
+    speeds_mps: Floats
+
+
 class Chunks(NamedTuple):
-    """The bytes that came in one call, of M sockets at most."""
+    """Chunks of one call that are for others to read, of M sockets at most."""
 
     entries: Bytes
     """As the system tells which sockets have any."""
@@ -52,12 +62,20 @@ class Chunks(NamedTuple):
     descriptors: Ints
     sizes: Ints
     """Bytes of each chunk in `room`."""
-    counts: Ints
-    """Movements that a chunk consists of; 0 where it is for others to read."""
-    numbers: Ints
-    """Of the latest of them, as its direction and speed."""
-    directions_rad: Floats
-    speeds_mps: Floats
+
+
+class Tally(NamedTuple):
+    """The figures of one call."""
+
+    found: int
+    """Sockets at which anything had come."""
+    others: int
+    """Chunks that are for others to read."""
+    movements: int
+    movement_bytes: int
+    """Bytes of the frames of these movements."""
+    superseded: int
+    """Movements that later ones have replaced."""
 
 
 @kernel
@@ -94,44 +112,50 @@ def send_all(
 
 @kernel
 def receive_all(
-    poll: int, entry_bytes: int, entry_at: int, purses: Ints, fields: Fields, chunks: Chunks
-) -> int:
-    """Receive what has come at the sockets of an epoll, a chunk of each; returns how many had any.
+    poll: int, entry_bytes: int, entry_at: int, purses: Purses, fields: Fields, chunks: Chunks
+) -> Tally:
+    """Receive what has come at the sockets of an epoll, a chunk of each at most.
 
-    Entries of the epoll take so many bytes each, with the descriptor at `entry_at`. `purses` has
-    for each descriptor the frames that are paid for; movements are taken from it. A chunk is empty
-    where the connection has ended or failed.
+    Entries of the epoll take so many bytes each, with the descriptor at `entry_at`. A chunk that is
+    nothing but movements is taken, if the purse of its descriptor has so many frames. Any other
+    one is left in `chunks`; it is empty where the connection has ended or failed.
     """
     most, chunk_bytes = chunks.room.shape
-    found = epoll_wait(
-        np.int32(poll), np.uintp(chunks.entries.ctypes.data), np.int32(most), np.int32(0)
+    found = int(
+        epoll_wait(
+            np.int32(poll), np.uintp(chunks.entries.ctypes.data), np.int32(most), np.int32(0)
+        )
     )
+    others = total = total_bytes = superseded = 0
     for i in range(found):
         at = i * entry_bytes
         happened = np.int64(chunks.entries[at]) | np.int64(chunks.entries[at + 1]) << 8
         descriptor = np.int64(0)
         for k in range(4):
             descriptor |= np.int64(chunks.entries[at + entry_at + k]) << (8 * k)
-        chunks.descriptors[i], chunks.sizes[i], chunks.counts[i] = descriptor, 0, 0
-        if happened != READABLE:
-            continue
-        chunk = chunks.room[i]
-        size = recv(
-            np.int32(descriptor),
-            np.uintp(chunk.ctypes.data),
-            np.uintp(chunk_bytes),
-            np.int32(QUIETLY),
-        )
-        if size <= 0:
-            continue
-        chunks.sizes[i] = size
-        if size == chunk_bytes:
-            continue
-        count, number, direction_rad, speed_mps = movements(
-            chunk[:size], fields.code, fields.seq, fields.direction, fields.speed
-        )
-        if 0 < count <= purses[descriptor]:
-            purses[descriptor] -= count
-            chunks.counts[i], chunks.numbers[i] = count, number
-            chunks.directions_rad[i], chunks.speeds_mps[i] = direction_rad, speed_mps
-    return int(found)
+        chunk = chunks.room[others]
+        size = 0
+        if happened == READABLE:
+            size = recv(
+                np.int32(descriptor),
+                np.uintp(chunk.ctypes.data),
+                np.uintp(chunk_bytes),
+                np.int32(QUIETLY),
+            )
+        if 0 < size < chunk_bytes:
+            count, number, direction_rad, speed_mps = movements(
+                chunk[:size], fields.code, fields.seq, fields.direction, fields.speed
+            )
+            if 0 < count <= purses.frames[descriptor]:
+                purses.frames[descriptor] -= count
+                total += count
+                total_bytes += size
+                superseded += count - 1 + purses.waits[descriptor]
+                purses.waits[descriptor] = 1
+                purses.numbers[descriptor] = number
+                purses.directions_rad[descriptor] = direction_rad
+                purses.speeds_mps[descriptor] = speed_mps
+                continue
+        chunks.descriptors[others], chunks.sizes[others] = descriptor, max(size, 0)
+        others += 1
+    return Tally(max(found, 0), others, total, total_bytes, superseded)

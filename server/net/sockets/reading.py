@@ -2,7 +2,8 @@
 
 A connection comes here when a movement of it was taken that nothing else waited before. From then
 on its transport pauses, and its socket stands in an epoll of ours. A chunk that is nothing but
-whole movements is taken here. Any other chunk sends the connection back to its transport, and is
+whole movements is taken here; the latest of each connection waits until the next tick asks for it.
+Any other chunk sends the connection back to its transport, behind the movement that waits, and is
 given to it just as the transport itself would have done: so all limits, faults and orders are those
 of the usual path. Ends and errors are not even read here.
 
@@ -11,7 +12,8 @@ goes back too. A connection that was cut off goes out of the epoll with its desc
 nobody reads between a look at the epoll and the bytes that are received of it.
 
 The event loop looks at the epoll. After something came it rests for a moment and then takes at once
-what came meanwhile, as network cards do. Every tick begins with a look.
+what came meanwhile, as network cards do. Every tick begins with a look. The epoll tells of a socket
+once for all that has come: whatever is not read of it sends the connection back.
 """
 
 import asyncio
@@ -38,6 +40,7 @@ PAID: Final = 8
 """Frames that a connection pays for in advance. They come on top of what it may send at once."""
 LOW: Final = 3
 """It pays for more when it has fewer left."""
+_EVENTS: Final = select.EPOLLIN | select.EPOLLRDHUP | select.EPOLLET
 FRAME_BYTES: Final = HEAD_BYTES + LONGEST
 """The most bytes of a frame that is paid for here."""
 
@@ -74,6 +77,8 @@ class Reading:
         self._receiving = Receiving(self._epoll)
         self._sources: dict[int, Source] = {}
         self._avatars: dict[int, int] = {}
+        self._heard: set[int] = set()
+        """Descriptors of those of whom movements were taken since this was last told to them."""
         self._rest: asyncio.TimerHandle | None = None
         self._loop.add_reader(self._epoll.fileno(), self._wake)
 
@@ -105,7 +110,7 @@ class Reading:
             return
         source.transport.pause_reading()
         try:
-            self._epoll.register(descriptor, select.EPOLLIN | select.EPOLLRDHUP)
+            self._epoll.register(descriptor, _EVENTS)
         except OSError:
             log.exception("a socket cannot be polled")
             source.pay_back(PAID, self._loop.time())
@@ -119,64 +124,76 @@ class Reading:
         if source not in self:
             return
         descriptor = source.descriptor
+        if self._receiving.purses.waits[descriptor]:
+            self._take_movements(np.array([descriptor]))
+        if descriptor in self._heard:
+            self._heard.remove(descriptor)
+            source.heard = True
         del self._sources[descriptor]
-        source.pay_back(int(self._receiving.purses[descriptor]), self._loop.time())
+        source.pay_back(int(self._receiving.purses.frames[descriptor]), self._loop.time())
         self._receiving.pay(descriptor, 0)
         if not source.transport.is_closing():
             self._epoll.unregister(descriptor)
             source.transport.resume_reading()
 
     def poll(self) -> int:
-        """Take everything that has come; returns from how many connections."""
+        """Take everything that has come; returns from how many connections. Movements wait."""
         total = 0
         for _ in range(len(self._sources) // MOST + 1):
-            found = self._receiving.receive()
-            total += found
-            if found:
-                self._deliver(found)
-            if found < MOST:
+            tally = self._receiving.receive()
+            total += tally.found
+            if tally.movements:
+                self._traffic.messages_in += tally.movements
+                self._traffic.bytes_in += tally.movement_bytes - HEAD_BYTES * tally.movements
+                self._traffic.movements_superseded += tally.superseded
+            # These may end connections, or give descriptors away.
+            for descriptor, chunk in self._receiving.others(tally.others):
+                self._hand_over(descriptor, chunk)
+            if tally.found < MOST:
                 break
         return total
 
-    def _deliver(self, found: int) -> None:
-        chunks = self._receiving.chunks
-        counts = chunks.counts[:found]
-        moved, others = np.flatnonzero(counts), np.flatnonzero(counts == 0)
-        # Unusual chunks may end connections, or give descriptors away.
-        descriptors = chunks.descriptors[others].tolist()
-        unusual = [self._receiving.chunk(place) for place in others.tolist()]
-        if len(moved):
-            self._take_movements(moved)
-        for descriptor, chunk in zip(descriptors, unusual, strict=True):
-            self._hand_over(descriptor, chunk)
-
-    def _take_movements(self, places: NDArray[np.int64]) -> None:
-        chunks, traffic = self._receiving.chunks, self._traffic
-        number = int(chunks.counts[places].sum())
-        traffic.messages_in += number
-        traffic.bytes_in += int(chunks.sizes[places].sum()) - HEAD_BYTES * number
-        traffic.movements_superseded += number - len(places)
-        moved = chunks.descriptors[places]
-        descriptors = moved.tolist()
-        for descriptor in descriptors:
-            self._sources[descriptor].heard = True
-        try:
-            self._take(
-                [self._avatars[descriptor] for descriptor in descriptors],
-                chunks.numbers[places].tolist(),
-                chunks.directions_rad[places].tolist(),
-                chunks.speeds_mps[places].tolist(),
-            )
-        except Exception:
-            # A tick begins with this: the world goes on without these movements.
-            log.exception("movements failed", number=number)
-        now, purses = self._loop.time(), self._receiving.purses
-        for descriptor in moved[purses[moved] < LOW].tolist():
+    def deliver(self) -> None:
+        """Take everything that has come, and hand on the movements that wait."""
+        self.poll()
+        moved = self._receiving.waiting()
+        if not len(moved):
+            return
+        self._take_movements(moved)
+        now, frames = self._loop.time(), self._receiving.purses.frames
+        for descriptor in moved[frames[moved] < LOW].tolist():
             source = self._sources[descriptor]
-            if source.prepay(PAID - int(purses[descriptor]), now):
+            if source.prepay(PAID - int(frames[descriptor]), now):
                 self._receiving.pay(descriptor, PAID)
             else:
                 self.leave(source)
+
+    def tell_heard(self) -> None:
+        """Let the connections know of which anything was taken here since the last call."""
+        for descriptor in self._heard:
+            self._sources[descriptor].heard = True
+        self._heard.clear()
+
+    def waiting(self) -> list[int]:
+        """The avatars of which a movement waits."""
+        return [self._avatars[descriptor] for descriptor in self._receiving.waiting().tolist()]
+
+    def _take_movements(self, moved: NDArray[np.int64]) -> None:
+        """Hand on the movements that wait of these descriptors."""
+        descriptors = moved.tolist()
+        self._heard.update(descriptors)
+        purses = self._receiving.purses
+        purses.waits[moved] = False
+        try:
+            self._take(
+                [self._avatars[descriptor] for descriptor in descriptors],
+                purses.numbers[moved].tolist(),
+                purses.directions_rad[moved].tolist(),
+                purses.speeds_mps[moved].tolist(),
+            )
+        except Exception:
+            # A tick begins with this: the world goes on without these movements.
+            log.exception("movements failed", number=len(descriptors))
 
     def _hand_over(self, descriptor: int, chunk: bytes) -> None:
         """Let a connection go, and take a chunk in its own way."""

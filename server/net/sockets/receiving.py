@@ -4,10 +4,17 @@ import select
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from esplanade.protocol import ClientCode
 from esplanade.protocol.messages import Move
-from esplanade.server.net.compiled._socket_kernels import Chunks, Fields, receive_all
+from esplanade.server.net.compiled._socket_kernels import (
+    Chunks,
+    Fields,
+    Purses,
+    Tally,
+    receive_all,
+)
 from esplanade.server.net.sockets.system import ENTRY_AT, ENTRY_BYTES
 
 MOST: Final = 256
@@ -22,32 +29,60 @@ _FIELDS: Final = Fields(
 
 
 class Receiving:
-    """The sockets of an epoll, and what has come at them in the latest call."""
+    """The sockets of an epoll, what has come at them in the latest call, and what waits of it."""
 
     def __init__(self, epoll: select.epoll) -> None:
         self._epoll = epoll
-        self.purses = np.zeros(1024, dtype=np.int64)
-        """For each descriptor, the frames that are paid for."""
-        whole, real = np.empty((4, MOST), dtype=np.int64), np.empty((2, MOST))
-        self.chunks = Chunks(
+        self.purses = _purses(1024)
+        self._chunks = Chunks(
             np.empty(MOST * ENTRY_BYTES, dtype=np.uint8),
             np.empty((MOST, CHUNK_BYTES), dtype=np.uint8),
-            *whole,
-            *real,
+            np.empty(MOST, dtype=np.int64),
+            np.empty(MOST, dtype=np.int64),
         )
 
     def pay(self, descriptor: int, frames: int) -> None:
         """Set how many frames of a descriptor are paid for."""
-        while descriptor >= len(self.purses):
-            self.purses = np.concatenate([self.purses, np.zeros_like(self.purses)])
-        self.purses[descriptor] = frames
+        while descriptor >= len(self.purses.frames):
+            more = _purses(len(self.purses.frames))
+            self.purses = _joined(self.purses, more)
+        self.purses.frames[descriptor] = frames
 
-    def receive(self) -> int:
-        """Receive a chunk from every socket at which any has come; returns from how many."""
+    def waiting(self) -> NDArray[np.int64]:
+        """The descriptors of which a movement waits, int (N,)."""
+        return np.flatnonzero(self.purses.waits)
+
+    def receive(self) -> Tally:
+        """Receive a chunk from every socket at which any has come, from so many at most."""
         descriptor = self._epoll.fileno()
-        found = receive_all(descriptor, ENTRY_BYTES, ENTRY_AT, self.purses, _FIELDS, self.chunks)
-        return max(found, 0)
+        return receive_all(descriptor, ENTRY_BYTES, ENTRY_AT, self.purses, _FIELDS, self._chunks)
 
-    def chunk(self, place: int) -> bytes:
-        """The chunk at a place of the latest call."""
-        return self.chunks.room[place, : self.chunks.sizes[place]].tobytes()
+    def others(self, number: int) -> list[tuple[int, bytes]]:
+        """The descriptors and chunks of the latest call that are for others to read: so many."""
+        chunks = self._chunks
+        return [
+            (int(chunks.descriptors[k]), chunks.room[k, : chunks.sizes[k]].tobytes())
+            for k in range(number)
+        ]
+
+
+def _purses(number: int) -> Purses:
+    """Empty purses of so many descriptors."""
+    return Purses(
+        np.zeros(number, dtype=np.int64),
+        np.zeros(number, dtype=np.uint8),
+        np.zeros(number, dtype=np.int64),
+        np.zeros(number),
+        np.zeros(number),
+    )
+
+
+def _joined(purses: Purses, more: Purses) -> Purses:
+    """Purses, and more of them behind."""
+    return Purses(
+        np.concatenate([purses.frames, more.frames]),
+        np.concatenate([purses.waits, more.waits]),
+        np.concatenate([purses.numbers, more.numbers]),
+        np.concatenate([purses.directions_rad, more.directions_rad]),
+        np.concatenate([purses.speeds_mps, more.speeds_mps]),
+    )

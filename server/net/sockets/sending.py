@@ -1,6 +1,6 @@
 """The snapshots of a tick for many clients are sent in one kernel."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +13,7 @@ Ints = NDArray[np.int64]
 
 
 def send_to_all(
-    descriptors: Sequence[int],
+    descriptors: Ints,
     block: Bytes,
     begins: Ints,
     ends: Ints,
@@ -31,7 +31,7 @@ def send_to_all(
     head_ends = head_sizes.cumsum()
     sent = np.full(len(descriptors), NONE, dtype=np.int64)
     send_all(
-        np.array(descriptors, dtype=np.int64),
+        descriptors,
         block,
         begins,
         ends,

@@ -20,5 +20,5 @@ def rehearse_sockets() -> None:
         for each in (here, there):
             each.setblocking(False)
         epoll.register(there.fileno(), select.EPOLLIN)
-        send_to_all([here.fileno()], block, ends - 2, ends, {0: b"first"})
+        send_to_all(np.array([here.fileno()]), block, ends - 2, ends, {0: b"first"})
         Receiving(epoll).receive()

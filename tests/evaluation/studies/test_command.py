@@ -8,6 +8,7 @@ import pytest
 
 from esplanade.cli import main
 from esplanade.commandline import exit_codes
+from esplanade.evaluation import measures
 from tests.evaluation.worlds import busy_plaza, write_csv
 
 
@@ -47,15 +48,40 @@ def test_candidates_are_compared(
     tmp_path: Path, crowds: list[Path], capsys: pytest.CaptureFixture[str]
 ) -> None:
     listed, target = tmp_path / "candidates.jsonl", tmp_path / "all.json"
-    listed.write_text('{"foresight_s": 2}\n')
+    listed.write_text('{"catch_up": 0.3}\n')
     study = [*crowds, "--tune", "--vary", "risk_weight=2,20", "--candidates", listed]
+    study += ["--set", "catch_up=0"]  # so slow a baseline that another one is better
     assert run(*study, "--score-cache", tmp_path / "done.jsonl", "--json", target) == exit_codes.OK
     shown = capsys.readouterr().out
     assert "Leave-one-out cross-validation" in shown
-    assert "Chosen on all recordings: " in shown
+    assert "Chosen on all places: " in shown
     found = json.loads(target.read_text())
     assert len(found["candidates"]) == 4
     assert [fold["left_out"] for fold in found["folds"]] == ["plaza", "market"]
+
+
+def test_recordings_of_one_place_count_as_one(
+    tmp_path: Path,
+    crowds: list[Path],
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(measures, "PIECE_S", 4.0)  # these recordings are short
+    target = tmp_path / "all.json"
+    study = [*crowds, "--tune", "--vary=risk_weight=20", "--score-cache", tmp_path / "done.jsonl"]
+    assert run(*study, "--place=town=plaza,market") == exit_codes.USAGE
+    assert "--tune needs two places" in capsys.readouterr().err
+    assert run(*study, "--place=town=plaza", "--place=city=plaza") == exit_codes.USAGE
+    assert "--place: plaza was recorded at town or at city" in capsys.readouterr().err
+    other = write_csv(tmp_path, busy_plaza(), "station")
+    study += ["--place=town=plaza,market", "--episodes=6", "--json", target]
+    assert run(other, *study) == exit_codes.OK
+    found = json.loads(target.read_text())
+    assert [fold["left_out"] for fold in found["folds"]] == ["station", "town"]
+    for rows in (found["candidates"], found["folds"]):
+        for row in rows:
+            low, high = row["intervals"]["time_ratio"]
+            assert low <= row["time_ratio"] <= high
 
 
 @pytest.mark.parametrize(
@@ -73,8 +99,14 @@ def test_candidates_are_compared(
         ),
         (["--tune", "--score-cache=done"], "--tune needs candidates"),
         (["--tune", "--score-cache=done", "--vary=foresight_s"], "--tune needs values"),
-        (["--tune", "--score-cache=done", "--vary=foresight_s=2"], "--tune needs two recordings"),
+        (["--tune", "--score-cache=done", "--vary=foresight_s=2"], "--tune needs two places"),
         (["--tune", "--score-cache=done", "--candidates=none"], "none: cannot be read"),
+        (
+            ["--tune", "--score-cache=done", "--vary=foresight_s=2", "--place=town=plaza,station"],
+            "--place: there is no recording station, but plaza",
+        ),
+        (["--place=town=plaza"], "--place is for --sensitivity and --tune"),
+        (["--tune", "--place=plaza"], "'plaza' is not PLACE=NAME,NAME"),
         (["--vary=foresight_s=2"], "--vary is for --sensitivity and --tune"),
         (["--candidates=some.jsonl"], "--candidates is for --tune"),
     ],

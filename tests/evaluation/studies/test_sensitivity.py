@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from esplanade.actors import ActorParameters
+from esplanade.evaluation.measures import MEASURES
 from esplanade.evaluation.settings import DEFAULTS, SettingError, check
 from esplanade.evaluation.studies import sensitivity, sensitivity_plot
-from esplanade.evaluation.studies.measures import MEASURES, Floats
 from esplanade.evaluation.studies.sensitivity import (
     BEHAVIOUR_PARAMETERS,
     BODY_PARAMETERS,
@@ -17,7 +17,7 @@ from esplanade.evaluation.studies.sensitivity import (
     Curve,
 )
 from esplanade.evaluation.studies.variants import Tables
-from esplanade.evaluation.trials import Source
+from esplanade.stats import Sample
 from tests.evaluation.worlds import RULES
 
 NEAR = [measure.name for measure in MEASURES].index("near_s")
@@ -63,12 +63,12 @@ def test_a_setting_that_cannot_be_scaled_needs_values() -> None:
 
 
 def measured(shift: float) -> Tables:
-    """Tables of three recordings; `shift` is added to the time near people."""
-    found: dict[Source, Floats] = {}
+    """Tables of three places; `shift` is added to the time near people."""
+    found: dict[str, Sample] = {}
     for k in range(3):
         rows = np.random.default_rng(k).uniform(0.0, 1.0, (40, len(MEASURES)))
         rows[:, NEAR] += shift
-        found[Source(Path(f"{k}.csv"))] = rows
+        found[f"{k}"] = Sample.of(rows, range(len(rows)))
     return found
 
 

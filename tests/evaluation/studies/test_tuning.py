@@ -6,15 +6,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from esplanade.evaluation.measures import MEASURES, Floats
 from esplanade.evaluation.settings import SettingError
 from esplanade.evaluation.studies import tuning
-from esplanade.evaluation.studies.measures import MEASURES, Floats
 from esplanade.evaluation.studies.variants import Variant
-from esplanade.evaluation.trials import Source
+from esplanade.stats import Sample
 from tests.evaluation.worlds import RULES
 
 GOALS = {measure.name: measure.goal for measure in MEASURES}
-SOURCES = [Source(Path(f"{name}.csv")) for name in ("plaza", "market", "station")]
+PLACES = ["plaza", "market", "station"]
 
 
 def measures(**changes: float) -> Floats:
@@ -85,8 +85,8 @@ def test_a_file_of_candidates_that_is_missing_is_named(tmp_path: Path) -> None:
         tuning.read_candidates(tmp_path / "none.jsonl")
 
 
-def rows(contacts_percent: float) -> Floats:
-    return np.array([measures(contacts_percent=contacts_percent)] * 10)
+def rows(contacts_percent: float) -> Sample:
+    return Sample.of([measures(contacts_percent=contacts_percent)] * 10, range(10))
 
 
 UNCHANGED = Variant(RULES)
@@ -97,29 +97,29 @@ LUCKY = Variant(RULES, (("risk_weight", 99.0),))
 CONTACTS = {UNCHANGED: (4.0, 4.0, 4.0), EVEN: (3.0, 3.0, 3.0), LUCKY: (0.0, 4.0, 3.5)}
 
 
-def test_the_choice_for_a_recording_is_not_made_on_it() -> None:
+def test_the_choice_for_a_place_is_not_made_there() -> None:
     tables = {
-        variant: dict(zip(SOURCES, map(rows, contacts), strict=True))
+        variant: dict(zip(PLACES, map(rows, contacts), strict=True))
         for variant, contacts in CONTACTS.items()
     }
     found = tuning.tune(tables, UNCHANGED, seed=0)
     assert [variant for variant, _, _ in found.ranked] == [LUCKY, EVEN, UNCHANGED]
     assert found.confidence_percent == 100.0
     plaza, market, station = found.folds
-    assert [fold.left_out for fold in found.folds] == SOURCES
+    assert [fold.left_out for fold in found.folds] == PLACES
     assert plaza.chosen == EVEN  # without the plaza the lucky candidate is the worse one
     assert plaza.cost == pytest.approx(float(tuning.cost(measures(contacts_percent=3.0))))
     assert plaza.least_cost == pytest.approx(float(tuning.cost(measures(contacts_percent=0.0))))
     assert market.chosen == station.chosen == LUCKY
     assert market.cost == pytest.approx(market.baseline_cost)
-    figures = tuning.figures(found, {source: source.path.stem for source in SOURCES})
+    figures = tuning.figures(found)
     assert [fold["left_out"] for fold in figures["folds"]] == ["plaza", "market", "station"]
     assert figures["candidates"][0]["settings"] == {"risk_weight": 99.0}
     assert figures["folds"][0]["contacts_percent"] == pytest.approx(3.0)
 
 
 def test_equal_candidates_leave_all_as_it_is() -> None:
-    tables = {v: {source: rows(2.0) for source in SOURCES} for v in (UNCHANGED, EVEN)}
+    tables = {v: {place: rows(2.0) for place in PLACES} for v in (UNCHANGED, EVEN)}
     found = tuning.tune(tables, UNCHANGED, seed=0)
     assert found.ranked[0][0] == UNCHANGED
     assert {fold.chosen for fold in found.folds} == {UNCHANGED}

@@ -3,9 +3,11 @@
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
+
+from esplanade.evaluation.measures import MEASURES
 from esplanade.evaluation.runner import run_trials
 from esplanade.evaluation.settings import DEFAULTS
-from esplanade.evaluation.studies.measures import MEASURES
 from esplanade.evaluation.studies.variants import LIMIT, Variant, tables_of, trials_of
 from esplanade.evaluation.trials import Source
 from tests.evaluation.worlds import RULES, busy_plaza, write_csv
@@ -33,7 +35,13 @@ def test_every_variant_walks_the_same_episodes_once(tmp_path: Path) -> None:
     trials = trials_of([Variant(RULES), wary, wary], sources, 2, 0)
     assert len(trials) == 4
     assert len({trial.episodes for trial in trials}) == 1
-    tables = tables_of(run_trials(trials, 1, lambda _: None))
+    results = run_trials(trials, 1, lambda _: None)
+    tables = tables_of(results, {source: source.path.stem for source in sources})
     assert list(tables) == [Variant(RULES), wary]
-    assert [list(rows) for rows in tables.values()] == [sources, sources]
-    assert all(t.shape == (2, len(MEASURES)) for rows in tables.values() for t in rows.values())
+    assert [list(rows) for rows in tables.values()] == [["plaza", "market"]] * 2
+    shapes = {there.values.shape for rows in tables.values() for there in rows.values()}
+    assert shapes == {(2, len(MEASURES))}
+    (town,) = tables_of(results, dict.fromkeys(sources, "town"))[wary].values()
+    apart = [there.values for there in tables[wary].values()]
+    np.testing.assert_array_equal(town.values, np.concatenate(apart))
+    assert town.count == sum(there.count for there in tables[wary].values())

@@ -6,6 +6,7 @@ from typing import Any, cast
 import numpy as np
 import pytest
 from websockets.asyncio.server import ServerConnection
+from websockets.protocol import State
 
 from esplanade.actors import Explanation, Reason
 from esplanade.actors.blockers import Blocker
@@ -275,7 +276,7 @@ def test_bytes_are_the_same_whether_transports_write_them_or_all_are_sent_at_onc
             for usual, quick in zip(*sessions, strict=True):
                 frames, usual.line.frames = usual.line.frames, []
                 assert quick.bytes_received() == b"".join(frames)
-                direct += quick.outbox.empty
+                direct += quick.outbox.clear
             heard.append(sum(map(len, frames)))
         traffic = [
             [
@@ -287,3 +288,41 @@ def test_bytes_are_the_same_whether_transports_write_them_or_all_are_sent_at_onc
     assert traffic[0] == traffic[1]
     assert traffic[0][3] > 0
     assert direct > 300
+
+
+@pytest.mark.skipif(not AVAILABLE, reason="kernels call the system on Linux only")
+@pytest.mark.parametrize("how", ["taken over", "closed"])
+def test_a_session_that_ends_is_sent_nothing_past_its_transport_and_its_successor_is(
+    how: str,
+) -> None:
+    trial = Trial(scene=FIELD, view_radius_m=25.0)
+    ann, ben = trial.join((10.0, 10.0), (12.0, 10.0))
+    with ExitStack() as stack:
+        pairs = [socket.socketpair() for _ in range(3)]
+        for each in chain.from_iterable(pairs):
+            stack.enter_context(each)
+        first, second, third = (Direct(*pair) for pair in pairs)
+        by_id: dict[int, Any] = {ann: first, ben: second}
+        delivery = Delivery(trial.audience, by_id, 20, lambda _: None)
+
+        def tick() -> list[bool]:
+            """Which of the three were told something."""
+            delivery.deliver(trial.tick(writing=False), now=0.0)
+            return [bool(each.bytes_received()) for each in (first, second, third)]
+
+        for _ in range(3):
+            assert tick() == [True, True, False]
+        assert first.outbox.clear
+        assert second.outbox.clear
+        if how == "taken over":
+            by_id[ann] = third
+            for _ in range(3):
+                assert tick() == [False, True, True]
+            assert third.outbox.clear
+        else:
+            first.outbox.use_transport()
+            first.line.state = State.CLOSING
+            for _ in range(3):
+                assert tick() == [False, True, False]
+            del by_id[ann]
+            assert tick() == [False, True, False]

@@ -87,9 +87,9 @@ class Recorder(asyncio.Protocol):
 
 @asynccontextmanager
 async def watched(
-    rate: float = RATE, traffic: Traffic | None = None
+    rate: float = RATE, traffic: Traffic | None = None, *, ticking: bool = True
 ) -> AsyncIterator[tuple[Recorder, socket.socket, Reading]]:
-    """A connection, its other end, and what reads it."""
+    """A connection, its other end, and what reads it; `ticking` asks for movements."""
     loop = asyncio.get_running_loop()
     with socket.create_server(("127.0.0.1", 0)) as listening:
         there = socket.create_connection(listening.getsockname())
@@ -99,13 +99,22 @@ async def watched(
     recorder = Recorder(rate)
     transport, _ = await loop.connect_accepted_socket(lambda: recorder, here)
     reading = recorder.reading = Reading(recorder.moved, traffic or Traffic())
+    ticks = asyncio.create_task(tick(reading)) if ticking else None
     try:
         with there:
             yield recorder, there, reading
     finally:
+        if ticks is not None:
+            ticks.cancel()
         reading.close()
         transport.abort()
         await recorder.ended.wait()
+
+
+async def tick(reading: Reading) -> None:
+    while True:
+        await asyncio.sleep(0.001)
+        reading.deliver()
 
 
 def frame(message: ClientMessage) -> bytes:
@@ -157,6 +166,8 @@ def test_all_messages_come_in_their_order_but_movements_that_later_ones_replace(
                 if waits[k % len(waits)]:
                     await asyncio.sleep(0.0)
                     reading.poll()
+                if waits[-k % len(waits)]:
+                    reading.deliver()
             await until(lambda: recorder.got and recorder.got[-1] == sent[-1])
             assert recorder.broken is None
             return recorder.got
@@ -166,7 +177,7 @@ def test_all_messages_come_in_their_order_but_movements_that_later_ones_replace(
     missing = [each for each in sent if each not in got]
     assert all(isinstance(each, Move) for each in missing)
     for each in missing:
-        # It came in one chunk with a later one.
+        # A later one came before it was asked for.
         assert isinstance(sent[sent.index(each) + 1], Move)
 
 
@@ -179,7 +190,6 @@ async def test_whole_movements_are_read_at_once_and_anything_else_alone() -> Non
             await until(lambda k=k: len(recorder.got) == k + 1)
         assert recorder.got == first
         assert recorder.alone == 1
-        assert recorder.heard
         assert traffic.messages_in == 3
         assert traffic.bytes_in == sum(len(encode(each)) for each in first[1:])
         assert len(reading) == 1
@@ -222,7 +232,7 @@ async def test_frames_are_paid_for_before_they_are_read() -> None:
             sent += 1
             await until(lambda sent=sent: len(recorder.got) == sent)
             if sent == 2:
-                assert reading._receiving.purses[recorder.descriptor] == PAID - 1
+                assert reading._receiving.purses.frames[recorder.descriptor] == PAID - 1
         assert recorder.broken == "frames"
         assert 20 <= sent <= 20 + PAID
         assert 0 < LOW < PAID
@@ -285,8 +295,52 @@ async def test_a_connection_that_was_cut_off_is_read_no_more() -> None:
         assert len(reading) == 0
 
 
+async def test_the_latest_movement_waits_for_the_tick_and_goes_before_what_comes_after_it() -> None:
+    traffic = Traffic()
+    async with watched(traffic=traffic, ticking=False) as (recorder, there, reading):
+        moves = [Move(seq=k, direction=0.5 * k, speed=1.0) for k in range(5)]
+        there.sendall(frame(moves[0]))
+        await until(lambda: recorder in reading)
+        for k in (1, 2, 3):
+            there.sendall(frame(moves[k]))
+            await until(lambda k=k: traffic.messages_in == k)
+        assert recorder.got == moves[:1]
+        assert reading.waiting() == [AVATAR]
+        assert traffic.movements_superseded == 2
+        reading.deliver()
+        assert recorder.got == [moves[0], moves[3]]
+        assert reading.waiting() == []
+        assert not recorder.heard
+        reading.tell_heard()
+        assert recorder.heard
+        recorder.heard = False
+        reading.tell_heard()
+        assert not recorder.heard
+        there.sendall(frame(moves[4]))
+        await until(lambda: reading.waiting() == [AVATAR])
+        assert len(recorder.got) == 2
+        there.sendall(frame(Ping(nonce=1)))
+        await until(lambda: len(recorder.got) == 4)
+        assert recorder.got[2:] == [moves[4], Ping(nonce=1)]
+        assert recorder.heard
+        assert recorder not in reading
+        assert reading.waiting() == []
+
+
+async def test_a_movement_that_waits_is_taken_when_its_connection_ends() -> None:
+    async with watched(ticking=False) as (recorder, there, reading):
+        there.sendall(frame(Move(seq=0, direction=0.0, speed=1.0)))
+        await until(lambda: recorder in reading)
+        there.sendall(frame(Move(seq=1, direction=0.0, speed=1.0)))
+        await until(lambda: reading.waiting() == [AVATAR])
+        there.close()
+        await asyncio.wait_for(recorder.ended.wait(), 10.0)
+        assert recorder.got[1:] == [Move(seq=1, direction=0.0, speed=1.0)]
+        assert reading.waiting() == []
+
+
 async def test_a_quiet_loop_looks_only_when_something_comes() -> None:
-    async with watched() as (recorder, there, reading):
+    async with watched(ticking=False) as (recorder, there, reading):
         there.sendall(frame(Move(seq=0, direction=0.0, speed=1.0)))
         await until(lambda: recorder in reading)
         looks = 0
@@ -302,5 +356,5 @@ async def test_a_quiet_loop_looks_only_when_something_comes() -> None:
         quiet = looks
         assert quiet <= 2
         there.sendall(frame(Move(seq=1, direction=0.0, speed=1.0)))
-        await until(lambda: len(recorder.got) == 2)
+        await until(lambda: reading.waiting() == [AVATAR])
         assert looks > quiet

@@ -51,7 +51,7 @@ def test_each_client_gets_its_own_bytes_in_order(
     ends = np.cumsum([len(before), *(len(body) for _, body in wanted)])
     block = np.frombuffer(before + b"".join(body for _, body in wanted) + b"end", np.uint8)
     size, left = send_to_all(
-        [pairs[k][0].fileno() for k in range(len(wanted))],
+        np.array([pairs[k][0].fileno() for k in range(len(wanted))], dtype=np.int64),
         block,
         ends[:-1],
         ends[1:],
@@ -74,7 +74,7 @@ def test_what_the_system_does_not_take_is_left_for_the_transport(head: bytes) ->
         there[1].close()
         where = np.array([0, 0, 0]), np.array([len(body), 3, 3])
         size, left = send_to_all(
-            [each.fileno() for each in here],
+            np.array([each.fileno() for each in here]),
             np.frombuffer(body, np.uint8),
             *where,
             dict.fromkeys(range(3), head),
