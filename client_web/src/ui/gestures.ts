@@ -42,6 +42,8 @@ export class GestureMenu {
   /** Tell those who do not see it that somebody makes a gesture; returns the words for a label. */
   tell(name: string, own: boolean, gesture: GestureName): string {
     const { labels, they, you } = words.gestures;
+    // The same words again are said again.
+    this.captions.replaceChildren();
     write(this.captions, () => (own ? you[gesture] : they[gesture](name)));
     return labels[gesture];
   }

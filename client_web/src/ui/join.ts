@@ -80,6 +80,8 @@ export class JoinDialog {
   }
 
   private tell(reason: () => Wording): void {
+    // The same words again are said again.
+    this.reason.replaceChildren();
     write(this.reason, reason);
   }
 
