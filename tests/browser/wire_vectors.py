@@ -27,7 +27,7 @@ from esplanade.protocol import (
     encode_steps,
 )
 from esplanade.protocol.codes import MAX_CHAT_CHARS, MAX_NAME_CHARS
-from esplanade.protocol.looks import MOST, SHORTEST_CM, Look
+from esplanade.protocol.looks import CHOSEN, MOST, SHORTEST_CM, Look
 from esplanade.protocol.messages import (
     Admission,
     Away,
@@ -182,7 +182,7 @@ def vectors() -> dict[str, Any]:
             table.__name__: {member.name: member.value for member in table}
             for table in (ClientCode, ServerCode, Reason, Outcome, Gesture, CloseCode)
         },
-        "looks": {"most": list(MOST), "shortest_cm": SHORTEST_CM},
+        "looks": {"most": list(MOST[: len(CHOSEN)]), "shortest_cm": SHORTEST_CM},
         "kinds": _values(Kind),
         "client": [_vector(message) for message in FROM_CLIENT],
         "server": [_vector(message) for message in FROM_SERVER],
