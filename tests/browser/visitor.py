@@ -70,15 +70,17 @@ class Visitor:
         view: View = await self.page.evaluate(_LOOK)
         return view
 
-    async def until(self, condition: Callable[[View], bool]) -> View:
+    async def until(
+        self, condition: Callable[[View], bool], patience_s: float = PATIENCE_S
+    ) -> View:
         """Wait for what the page knows to fulfil a condition; returns that view.
 
         Raises
         ------
         AssertionError
-            It did not while a test waits.
+            It did not within that time.
         """
-        deadline_s = time.monotonic() + PATIENCE_S
+        deadline_s = time.monotonic() + patience_s
         while True:
             view = await self.look()
             if condition(view):
