@@ -14,7 +14,7 @@ from esplanade.bots.address import refusal
 from esplanade.bots.crew import Crew
 from esplanade.bots.csv_report import write_csv
 from esplanade.bots.figures import figures
-from esplanade.bots.html_report import page
+from esplanade.bots.html_report import report_page
 from esplanade.bots.load import LoadJob
 from esplanade.bots.options import SETTINGS
 from esplanade.bots.progress import Progress
@@ -151,7 +151,7 @@ def _conclude(
         if settings.csv_file is not None:
             write_csv(settings.csv_file, found.series)
         if settings.html_file is not None:
-            settings.html_file.write_text(page(tally, verdicts, found), encoding="utf-8")
+            settings.html_file.write_text(report_page(tally, verdicts, found), encoding="utf-8")
     except OSError as error:
         raise UsageError(f"the report cannot be written: {error}") from None
     return code

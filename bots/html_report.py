@@ -1,8 +1,7 @@
 """The report of a run as one HTML page that needs nothing else: tables and plots."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from html import escape
-from importlib import resources
 from typing import Any
 
 from esplanade.bots.charts import Chart, Line, draw
@@ -11,6 +10,7 @@ from esplanade.bots.report import SPREAD_HEADS, count_rows, spread_rows, verdict
 from esplanade.bots.tally import Tally
 from esplanade.bots.thresholds import Verdict
 from esplanade.commandline import exit_codes
+from esplanade.commandline.html_page import page, table
 
 _OUTCOMES = {
     exit_codes.OK: ("good", "All went well."),
@@ -19,32 +19,26 @@ _OUTCOMES = {
 }
 
 
-def page(tally: Tally, verdicts: Sequence[Verdict], found: Figures) -> str:
+def report_page(tally: Tally, verdicts: Sequence[Verdict], found: Figures) -> str:
     """The whole page."""
     mood, outcome = _OUTCOMES[found.exit_code]
-    style = resources.files("esplanade.bots").joinpath("html_report.css").read_text("utf-8")
-    return "\n".join(
+    return page(
+        f"Load test of {_url(found)}",
         [
-            '<!doctype html>\n<html lang="en">\n<head>\n<meta charset="utf-8">',
-            '<meta name="viewport" content="width=device-width, initial-scale=1">',
-            f"<title>Load test of {escape(_url(found))}</title>\n<style>\n{style}</style>",
-            "</head>\n<body>",
-            f"<h1>Load test of {escape(_url(found))}</h1>",
             f'<p class="outcome {mood}">{outcome} Exit code {found.exit_code}.</p>',
             *(f'<p class="warning">{escape(line)}</p>' for line in found.warnings),
             *_limits(verdicts),
             '<div class="charts">',
             *(f"<figure>{draw(chart)}</figure>" for chart in charts(found)),
             "</div>",
-            _table("Spread", ["", *SPREAD_HEADS], spread_rows(tally)),
+            table("Spread", ["", *SPREAD_HEADS], spread_rows(tally)),
             '<div class="tables">',
-            _table("Traffic", ["", "total", "a client a second"], count_rows(tally)),
+            table("Traffic", ["", "total", "a client a second"], count_rows(tally)),
             *_named("Errors", found.errors),
             *_named("Errors of the scenario", found.scenario_faults),
-            _table("Settings", ["", ""], _settings(found.settings)),
+            table("Settings", ["", ""], _settings(found.settings)),
             "</div>",
-            "</body>\n</html>\n",
-        ]
+        ],
     )
 
 
@@ -98,25 +92,14 @@ def charts(found: Figures) -> list[Chart]:
 def _limits(verdicts: Sequence[Verdict]) -> list[str]:
     if not verdicts:
         return []
-    return [_table("Limits", ["limit", "", "measured"], [verdict_row(each) for each in verdicts])]
+    return [table("Limits", ["limit", "", "measured"], [verdict_row(each) for each in verdicts])]
 
 
 def _named(title: str, counts: dict[str, int]) -> list[str]:
     if not counts:
         return []
     rows = sorted(counts.items(), key=lambda item: -item[1])
-    return [_table(title, ["", "times"], [(name, f"{times:,}") for name, times in rows])]
-
-
-def _table(title: str, heads: Iterable[str], rows: Iterable[Sequence[str]]) -> str:
-    head = "".join(f"<th>{escape(each)}</th>" for each in heads)
-    body = "\n".join(
-        "<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in row) + "</tr>" for row in rows
-    )
-    return (
-        f'<section><h2>{escape(title)}</h2><div class="wide"><table>\n'
-        f"<thead><tr>{head}</tr></thead>\n<tbody>\n{body}\n</tbody></table></div></section>"
-    )
+    return [table(title, ["", "times"], [(name, f"{times:,}") for name, times in rows])]
 
 
 def _settings(settings: dict[str, Any]) -> list[tuple[str, str]]:

@@ -8,7 +8,7 @@ from esplanade.commandline import exit_codes
 from esplanade.commandline.errors import UsageError
 from esplanade.commandline.output import console, made_folder, write_json
 from esplanade.commandline.progress import progress
-from esplanade.evaluation import forecast_report, plotting, report
+from esplanade.evaluation import forecast_report, plotting, report, report_files, tables
 from esplanade.evaluation.console import named_sources, rules_of, walk
 from esplanade.evaluation.policies import PolicyError
 from esplanade.evaluation.runner import TrialResult, ready_policy
@@ -61,9 +61,14 @@ def _trips(options: Namespace) -> bool:
     reacting = rules.people == "reacting"
     rows = rows_of(results, names, options.seed)
     compared = differences(results, options.seed, reacting=reacting)
-    report.show(console(), rows, reacting=reacting)
-    report.show_differences(console(), results[0].trial.label, compared)
+    shown = tables.of_recordings(rows, reacting=reacting)
+    shown += tables.of_differences(results[0].trial.label, compared)
+    report.show(console(), shown)
     report.show_faults(console(), results, names)
+    if options.report is not None:
+        report_files.write(
+            options.report, shown, shlex.join([*options.prog.split(), *options.words])
+        )
     if options.json is not None:
         told = {**rules.__dict__, "seed": options.seed, "interpolation": options.interp}
         figures = report.figures(results, rows, compared, names, {**told, **settings})

@@ -2,6 +2,7 @@
 
 import json
 from argparse import ArgumentTypeError, Namespace
+from pathlib import Path
 from typing import Any, Final
 
 from esplanade.commandline.errors import UsageError
@@ -31,6 +32,8 @@ POLICIES: Final = {
     "jupedsim-forces": "JuPedSim, social forces",
 }
 """Names and summaries of `esplanade.evaluation.policies`, which imports numpy."""
+
+REPORTS: Final = (".html", ".tex", ".csv")
 
 EXAMPLES: Final = """\
 examples:
@@ -174,6 +177,13 @@ def parser() -> Parser:
         "--json", metavar="FILE", type=OutputFile(), help="write every episode there"
     )
     results.add_argument(
+        "--report",
+        metavar="FILE",
+        type=_report,
+        help="write the tables there: .html, one page with plots; .tex, for papers; .csv, a row "
+        "for each figure",
+    )
+    results.add_argument(
         "--score-cache",
         metavar="FILE",
         type=OutputFile(),
@@ -270,6 +280,8 @@ def check(options: Namespace) -> None:
 def _check_studies(options: Namespace) -> None:
     """Whether a study has what it needs, and nothing is given for one that is not asked for."""
     studies = options.sensitivity or options.tune
+    if options.report is not None and (studies or options.prediction or options.fit):
+        raise UsageError("--report is for episodes that are walked once")
     if options.vary and not studies:
         raise UsageError("--vary is for --sensitivity and --tune")
     if options.place and not studies:
@@ -337,6 +349,13 @@ def _of_setting(text: str) -> str:
     if name not in NAMES:
         raise ArgumentTypeError(f"{name}: there is no such setting{suggestion(name, NAMES)}")
     return text
+
+
+def _report(text: str) -> Path:
+    path = OutputFile()(text)
+    if path.suffix not in REPORTS:
+        raise ArgumentTypeError(f"{path.name} is none of {', '.join(REPORTS)}")
+    return path
 
 
 def _place(text: str) -> tuple[str, tuple[str, ...]]:

@@ -15,7 +15,7 @@ from esplanade.bots.charts import Chart, Line, draw, nice_marks
 from esplanade.bots.csv_report import write_csv
 from esplanade.bots.figures import SCHEMA_VERSION, Figures, figures
 from esplanade.bots.histogram import Histogram
-from esplanade.bots.html_report import page
+from esplanade.bots.html_report import report_page
 from esplanade.bots.series import Series
 from esplanade.bots.tally import Tally
 from esplanade.bots.thresholds import read_thresholds
@@ -78,7 +78,7 @@ def test_the_page_is_whole_and_stands_alone() -> None:
     tally = eventful()
     verdicts = tuple(each.verdict(tally) for each in read_thresholds("errors>0"))
     found = figures(tally, verdicts, settings={"url": "ws://x"}, warnings=[EVIL], exit_code=3)
-    text = page(tally, verdicts, found)
+    text = report_page(tally, verdicts, found)
     reader = Page()
     reader.feed(text)
     reader.close()

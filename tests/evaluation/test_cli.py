@@ -95,6 +95,19 @@ def test_figures_have_intervals_and_policies_are_compared_on_the_same_episodes(
     assert compared["human", "contacts_percent"]["episodes"] == len(by["human"]) < 20
 
 
+@pytest.mark.parametrize("form", ["csv", "tex", "html"])
+def test_a_report_has_the_tables_that_are_printed(
+    tmp_path: Path, plaza: Path, capsys: pytest.CaptureFixture[str], form: str
+) -> None:
+    target = tmp_path / f"all.{form}"
+    words = ["--policy", "straight", "human", "--episodes", 4, "--report", target]
+    assert run(plaza, *words) == exit_codes.OK
+    text = target.read_text()
+    assert "Differences from straight" in capsys.readouterr().out
+    assert "Differences from straight" in text
+    assert "smallest clearance" in text
+
+
 def test_episodes_that_did_not_arrive_have_no_time_in_the_json(tmp_path: Path) -> None:
     walls = tmp_path / "cage.json"
     walls.write_text('{"segments": [[6, -3, 6, 3]]}')
@@ -236,6 +249,8 @@ def test_recordings_of_one_name_are_told_apart_by_their_paths(
         (["--plots", "/dev/null/x"], "--plots: "),
         (["--plot-episodes", "many"], "'many' is neither `failed` nor numbers"),
         (["--plot-episodes", "1,500"], "but there are episodes 0 to"),
+        (["--report", "all.doc"], "--report: all.doc is none of .html, .tex, .csv"),
+        (["--report", "all.csv", "--fit"], "--report is for episodes that are walked once"),
         (["--walls", "nowhere.json"], "nowhere.json: cannot be read"),
         (["missing.csv"], "missing.csv: cannot be read"),
         ([__file__, "--walls", __file__], "--walls belongs to one recording"),
