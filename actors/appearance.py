@@ -8,7 +8,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 
 class Appearance(BaseModel):
-    """What an actor wears, by the numbers of the protocol's looks.
+    """The clothes, hair and skin of an actor, by the numbers of the protocol's looks.
 
     A part that is 0 is not chosen: it follows from the number of the actor's avatar. How tall an
     actor is follows from its parameter `height_m`.

@@ -48,7 +48,7 @@ MEASURES: Final = (
 IMPOSED: Final = Measure(
     "displacement_m", "imposed on people, m", "imposed m", 2, 0.0, 0.0, lambda s: s.displacement_m
 )
-"""What is compared as well where people react."""
+"""One more measure, which is compared where people react."""
 
 
 def table(scores: Sequence[Score], measures: Sequence[Measure] = MEASURES) -> Floats:

@@ -45,7 +45,7 @@ _MEDIANS: Final[Mapping[str, Callable[[Score], float]]] = {
 
 
 class Row(NamedTuple):
-    """What one policy did on one recording, or on all of them together."""
+    """The results of one policy on one recording, or on all of them together."""
 
     recording: str
     policy: str

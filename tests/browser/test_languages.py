@@ -155,7 +155,7 @@ async def edges_at(name: str, holder: Locator) -> dict[str, Any]:
 async def test_an_arabic_name_turns_no_sentence_over(
     url: str, profile: BrowserContext, other_profile: BrowserContext
 ) -> None:
-    """What follows a name in a sentence stands to the right of it, digits too."""
+    """The rest of a sentence stands to the right of a name in it, digits too."""
     name = "مريم"
     ann, other = await met(profile, other_profile, url, "Fay", name)
     page = ann.page

@@ -306,7 +306,7 @@ def test_a_session_that_ends_is_sent_nothing_past_its_transport_and_its_successo
         delivery = Delivery(trial.audience, by_id, 20, lambda _: None)
 
         def tick() -> list[bool]:
-            """Which of the three were told something."""
+            """Those of the three who were told something."""
             delivery.deliver(trial.tick(writing=False), now=0.0)
             return [bool(each.bytes_received()) for each in (first, second, third)]
 
