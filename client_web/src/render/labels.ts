@@ -2,6 +2,7 @@
 
 import { type PerspectiveCamera, Vector3 } from "three";
 import { crown } from "../world/body";
+import { hasSign } from "../world/guides";
 import type { Avatar } from "../world/world";
 import { LabelRoom } from "./labelroom";
 
@@ -9,6 +10,8 @@ const MOST = 24;
 const FAR_M = 26;
 const FADE_M = 8;
 const ABOVE_M = 0.22;
+/** Over a guide there is room for the lantern as well. */
+const ABOVE_SIGN_M = 0.62;
 const SPOKEN_MS = 7000;
 /** A fainter label is not shown at all. */
 const FAINT = 0.05;
@@ -113,9 +116,9 @@ export class Labels {
   }
 
   /** The place of a label. */
-  private head({ animator: { body, build } }: Avatar): Vector3 {
+  private head({ look, animator: { body, build } }: Avatar): Vector3 {
     crown(body, build, this.at);
-    this.at.z += ABOVE_M;
+    this.at.z += hasSign(look) ? ABOVE_SIGN_M : ABOVE_M;
     return this.at;
   }
 
