@@ -1,4 +1,4 @@
-/** What sentences are made of where it is neither a name nor a number. */
+/** The arguments of sentences that are neither names nor numbers. */
 
 /** One of eight directions from somebody who looks straight ahead. */
 export type Side =

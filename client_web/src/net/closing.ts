@@ -36,7 +36,7 @@ const MEANINGS = {
   [CloseCode.KICKED]: { cause: "kicked", retry: false },
 } as const;
 
-/** What ends a connection: a close code, or what this page makes of its silence. */
+/** The end of a connection: by a close code, or by a silence that this page takes for one. */
 export type EndingCause =
   | (typeof MEANINGS)[keyof typeof MEANINGS]["cause"]
   | "lost"
