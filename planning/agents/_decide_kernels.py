@@ -399,6 +399,8 @@ def _improve(
     cost = path_cost(world, potential, task, path, near)
     if not cost.legal or not world.rules[0]["perturbs"]:
         return cost, False
+    if cost.mean_risk * (len(path) - 1) <= 2 * world.rules[0]["least_risk"]:
+        return cost, False  # not even a stretch of two slices may have so much that it is bent
     _copy(path, bent)
     if update_path(world, potential, task, bent, room) > 0:
         bent_cost = path_cost(world, potential, task, bent, near)

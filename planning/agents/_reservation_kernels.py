@@ -185,8 +185,8 @@ def others_near(
     r = reservations
     rules = r.rules[0]
     apart_m = rules["margin_m"] + 2.0 * slice_m
-    room_m = _most_room_m(r) + r.fastest_m
-    j0, j1, i0, i1 = buckets_within(r, x, y, 2.0 * r.widest_m + apart_m + room_m)
+    far = 2.0 * r.widest_m + apart_m + _most_room_m(r) + r.fastest_m
+    j0, j1, i0, i1 = buckets_within(r, x, y, far)
     met = 0
     crowded = 0
     if not rules["reserves"]:
@@ -195,14 +195,16 @@ def others_near(
         row = j * r.nx  # buckets of a row are listed one after the other
         for m in range(r.starts[k + 1, row + i0], r.starts[k + 1, row + i1 + 1]):
             o = r.members[k + 1, m]
-            if o == me or abs(r.heights[o, k + 1] - feet_m) >= BODIES_OVERLAP_M:
+            dx = x - r.paths[o, k + 1, 0]
+            dy = y - r.paths[o, k + 1, 1]
+            if dx * dx + dy * dy > far * far or o == me:
+                continue
+            if abs(r.heights[o, k + 1] - feet_m) >= BODIES_OVERLAP_M:
                 continue
             if met + crowded == len(others):
                 return met, crowded
             reach = r.radii[me] + r.radii[o] + apart_m
             room_m = room_wanted(r, me, o)
-            dx = x - r.paths[o, k + 1, 0]
-            dy = y - r.paths[o, k + 1, 1]
             # In the whole step agents stay within `fastest_m` of their places in its middle.
             most = reach + room_m + r.fastest_m
             if dx * dx + dy * dy > most * most:

@@ -64,6 +64,10 @@ class Trips(NamedTuple):
 
 _DERIVED: Final = ("bodies", "contacts", "potential_rows", "own_rows", "ranks")
 """Columns that point into what a zone derives of its own; they are derived anew after loading."""
+_SAVED: Final = tuple(
+    (name, k) for k, name in enumerate((*Agents._fields, *Trips._fields)) if name not in _DERIVED
+)
+"""The others, and where they stand in an `Agents` with a `Trips` behind it."""
 
 
 class AgentTable:
@@ -200,12 +204,8 @@ class AgentTable:
         for agent_id in self._rows:
             if isinstance(agent_id, bool) or not isinstance(agent_id, str | int):
                 raise TypeError(f"only text and whole numbers can be saved as ids: {agent_id!r}")
-        arrays = {
-            name: column.copy()
-            for columns in (self.agents, self.trips)
-            for name, column in columns._asdict().items()
-            if name not in _DERIVED
-        }
+        columns = (*self.agents, *self.trips)
+        arrays = {name: columns[k].copy() for name, k in _SAVED}
         slices = self.agents.planned.shape[1] - 1
         header = {
             "format": FORMAT,

@@ -15,7 +15,7 @@ from esplanade.planning.ground._geometry_kernels import LOW_ROOM_M, TOLERANCE_M,
 from esplanade.planning.ground.layered import TILE, LayeredArrays, cell_index
 from esplanade.planning.traversal._anchor_kernels import PARTS, SLACK_M
 
-_HALF_DIAGONAL = 0.7072
+HALF_DIAGONAL = 0.7072
 """Of a cell, in cells."""
 FOLLOW_M = 1.0
 """`follow` goes to no surface further away in height than this, from one point to the next."""
@@ -227,7 +227,7 @@ def clearance_at(grid: GridArrays, body: int, cell: int, x: float, y: float) -> 
         return -np.inf
     c = grid.clearance[body]
     own = c[cell]
-    half_m = _HALF_DIAGONAL * grid.layered.cell_m
+    half_m = HALF_DIAGONAL * grid.layered.cell_m
     beside, over, across, u, v = corners(grid, cell, x, y)
     away = length(u, v) * grid.layered.cell_m
     least = own - away
@@ -299,6 +299,75 @@ def fits_at_anchor(grid: GridArrays, body: int, cell: int, radius: float) -> boo
     return clearance_at(grid, body, cell, x, y) >= radius - SLACK_M
 
 
+@inlined
+def clearance_bound(grid: GridArrays, body: int, cell: int, x: float, y: float) -> float:
+    """`clearance_at` where it decides whether a body of that kind fits; elsewhere no more than the
+    distance to the barriers, which an interpolation may be."""
+    if cell < 0:
+        return -np.inf
+    own = grid.clearance[body, cell]
+    if own < 0.0:
+        return clearance_at(grid, body, cell, x, y)
+    place = grid.layered.places[cell]
+    dx = x - (grid.layered.x0 + (place["column"] + 0.5) * grid.layered.cell_m)
+    dy = y - (grid.layered.y0 + (place["row"] + 0.5) * grid.layered.cell_m)
+    away = length(dx, dy)
+    measures = grid.kinds.measures[body]
+    if own >= measures["radius_m"] + away:
+        return float(own - away)
+    half_m = HALF_DIAGONAL * grid.layered.cell_m
+    low_m = max(0.0, measures["radius_m"] - LOW_ROOM_M)
+    exact = _exact_clearance(grid, body, cell, x, y, own < half_m + low_m)
+    return min(exact, float(measures["reach_m"]) - half_m)
+
+
+@inlined
+def spread_allowed(
+    grid: GridArrays,
+    body: int,
+    cell: int,
+    ax: float,
+    ay: float,
+    bx: float,
+    by: float,
+    radius: float,
+) -> float:
+    """How far a disc may leave the straight line from a, in `cell`, to b, for each metre from b.
+
+    It is negative where the disc may not move on the line itself. On flat ground the line is
+    sphere-traced; elsewhere each piece is a cell long at most.
+    """
+    way = length(bx - ax, by - ay)
+    shortest = 0.5 * grid.layered.cell_m
+    s = 0.0
+    step = 0.0
+    before = 0.0
+    least = 1.0
+    while True:
+        u = s / way if way > 0.0 else 0.0
+        x = ax + u * (bx - ax)
+        y = ay + u * (by - ay)
+        there = follow(grid, cell, x, y)
+        room = clearance_bound(grid, body, there, x, y) - radius
+        if room < 0.0:
+            return -1.0
+        rise = abs(floor_of(grid, there) - floor_of(grid, cell))
+        if rise > grid.kinds.measures[body]["step_on_m"] + TOLERANCE_M:
+            return -1.0
+        if s > 0.0 and before < step + (way - s):
+            # Room falls by no more than the distance from either end of a piece, so that there is
+            # least of it, for each metre from b, where both say the same.
+            at = 0.5 * (room + (way - s) + step + (way - s) - before)
+            least = min(least, 0.5 * (before + room - step) / at)
+        if s >= way:
+            return max(0.0, least)
+        cell = there
+        before = room
+        step = max(room, shortest) if grid.flat else min(max(room, shortest), grid.layered.cell_m)
+        step = min(step, way - s)
+        s = s + step if step < way - s else way
+
+
 @kernel
 def line_is_clear(
     grid: GridArrays,
@@ -310,29 +379,8 @@ def line_is_clear(
     by: float,
     radius: float,
 ) -> bool:
-    """Whether a disc may move straight from a, in `cell`, to b; cheap in the open.
-
-    On flat ground the line is sphere-traced; elsewhere each piece is a cell long at most.
-    """
-    way = length(bx - ax, by - ay)
-    shortest = 0.5 * grid.layered.cell_m
-    s = 0.0
-    while True:
-        u = s / way if way > 0.0 else 0.0
-        x = ax + u * (bx - ax)
-        y = ay + u * (by - ay)
-        there = follow(grid, cell, x, y)
-        room = clearance_at(grid, body, there, x, y) - radius
-        if room < 0.0:
-            return False
-        rise = abs(floor_of(grid, there) - floor_of(grid, cell))
-        if rise > grid.kinds.measures[body]["step_on_m"] + TOLERANCE_M:
-            return False
-        cell = there
-        if s >= way:
-            return True
-        step = max(room, shortest) if grid.flat else min(max(room, shortest), grid.layered.cell_m)
-        s = min(way, s + step)
+    """Whether a disc may move straight from a, in `cell`, to b; cheap in the open."""
+    return spread_allowed(grid, body, cell, ax, ay, bx, by, radius) >= 0.0
 
 
 @kernel

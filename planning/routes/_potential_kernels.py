@@ -10,11 +10,13 @@ from numpy.typing import NDArray
 from esplanade.planning.compiled._heap_kernels import heap_pop, heap_push
 from esplanade.planning.compiled.jit import inlined, kernel
 from esplanade.planning.grid._grid_kernels import (
+    HALF_DIAGONAL,
     GridArrays,
     anchor_at,
     follow,
     length,
     line_is_clear,
+    spread_allowed,
 )
 from esplanade.planning.grid._side_kernels import cells_to_begin_at, is_barred, is_cut_off
 from esplanade.planning.traversal._anchor_kernels import SLACK_M
@@ -84,6 +86,28 @@ def sees_goal(
     )
 
 
+@inlined
+def spread_beside(
+    spread: float, here: float, x: float, y: float, wx: float, wy: float, cx: float, cy: float
+) -> float:
+    """A lower bound of `spread_allowed` of the straight line from c to a waypoint w.
+
+    The line from (x, y) to w has `spread`, and a disc that stands at (x, y) has room for `here` m.
+    Each point of the new line has one of the other that is as far from w, and lies aside of it by
+    the distance to w times the distance of the two directions. Points further from w than (x, y)
+    are no further from (x, y) than c is.
+    """
+    way = length(wx - x, wy - y)
+    new = length(wx - cx, wy - cy)
+    if new <= 0.0:
+        return -1.0
+    beyond = (here - length(cx - x, cy - y)) / new
+    if way <= 0.0:
+        return beyond
+    turned = length((wx - x) / way - (wx - cx) / new, (wy - y) / way - (wy - cy) / new)
+    return spread - turned if new <= way else min(spread - turned, beyond)
+
+
 @kernel
 def begin_wave(
     goal_cell: int,
@@ -91,6 +115,7 @@ def begin_wave(
     goal_y: float,
     potential: PotentialValues,
     settled: NDArray[np.uint8],
+    spreads: NDArray[np.float32],
     keys: NDArray[np.float64],
     items: NDArray[np.int64],
     state: NDArray[np.int64],
@@ -102,6 +127,7 @@ def begin_wave(
     potential[:, 0] = np.inf
     potential[:, 1:] = 0.0
     settled[:] = 0
+    spreads[goal_cell] = -1.0
     potential[goal_cell, 0] = 0.0
     potential[goal_cell, 1] = goal_x
     potential[goal_cell, 2] = goal_y
@@ -117,6 +143,7 @@ def grow_wave(
     longest_sight: float,
     potential: PotentialValues,
     settled: NDArray[np.uint8],
+    spreads: NDArray[np.float32],
     keys: NDArray[np.float64],
     items: NDArray[np.int64],
     state: NDArray[np.int64],
@@ -129,8 +156,11 @@ def grow_wave(
 
     The wave spreads from anchor to anchor over the steps of a kind of body. A cell that sees its
     neighbour's waypoint within `longest_sight` metres takes that waypoint over, else the neighbour
-    itself is its waypoint; at zero sight this is NF1. Lines of sight are tested once a cell, when
-    it leaves the heap. `keys` and `items` hold 8 entries a cell plus one.
+    itself is its waypoint; at zero sight this is NF1. A cell is asked whether it sees its waypoint
+    once, when it leaves the heap. On flat ground its line is traced only where the line of its
+    neighbour does not answer: `spreads` (N,) are lower bounds of `spread_allowed`. Elsewhere that
+    line says nothing, since what is a barrier depends on the height that one comes from. `keys` and
+    `items` hold 8 entries a cell plus one.
 
     It is wanted up to `margin` metres further than the nearest of the cells `targets` (K,); without
     any it spreads over all cells. It is never wanted further than `within` metres from the goal. At
@@ -148,6 +178,7 @@ def grow_wave(
             tx, ty = anchor_at(grid, body, target)
             until = min(until, potential_at(potential, target, tx, ty) + margin)
     last = reached + most
+    room_lost_m = enough + HALF_DIAGONAL * grid.layered.cell_m  # from a cell's centre
     while size > 0:
         if keys[0] > until or reached >= last:
             break
@@ -156,24 +187,34 @@ def grow_wave(
         if settled[cell]:
             continue
         x, y = anchor_at(grid, body, cell)
-        own = potential[cell]
-        seen = longest_sight == 0.0 or line_is_clear(grid, body, cell, x, y, own[1], own[2], enough)
+        left = potential[cell, 0]
+        wx = potential[cell, 1]
+        wy = potential[cell, 2]
+        spread = float(spreads[cell])
+        seen = longest_sight == 0.0 or spread >= 0.0
+        if not seen:
+            spread = spread_allowed(grid, body, cell, x, y, wx, wy, enough)
+            seen = spread >= 0.0
         if reached > 0 and not seen:
-            own[0] = np.inf
+            left = np.float32(np.inf)
             for direction in range(8):
                 other = links[cell, direction]
                 if not steps[cell] >> direction & 1 or not settled[other]:
                     continue
                 cx, cy = anchor_at(grid, body, other)
-                left = potential_at(potential, other, cx, cy)
-                if left + length(cx - x, cy - y) < own[0] + length(own[1] - x, own[2] - y):
-                    own[0] = left
-                    own[1] = cx
-                    own[2] = cy
-            if not np.isfinite(own[0]):
+                further = potential_at(potential, other, cx, cy)
+                if further + length(cx - x, cy - y) < left + length(wx - x, wy - y):
+                    left = np.float32(further)
+                    wx = np.float32(cx)
+                    wy = np.float32(cy)
+            potential[cell, 0] = left
+            potential[cell, 1] = wx
+            potential[cell, 2] = wy
+            if not np.isfinite(left):
                 continue
         settled[cell] = 1
         reached += 1
+        here = grid.clearance[body, cell] - room_lost_m
         for k in range(len(targets)):
             if targets[k] == cell:
                 until = min(until, potential_at(potential, cell, x, y) + margin)
@@ -185,21 +226,24 @@ def grow_wave(
             if not steps[cell] >> direction & 1 and not (
                 reached == 1
                 and longest_sight > 0.0
-                and sees_goal(grid, body, cell, own[1], own[2], other, cx, cy, enough)
+                and sees_goal(grid, body, cell, wx, wy, other, cx, cy, enough)
             ):
                 continue
-            left = own[0]
-            wx = own[1]
-            wy = own[2]
-            if length(wx - cx, wy - cy) > longest_sight:
-                left = own[0] + length(wx - x, wy - y)
-                wx = x
-                wy = y
-            cost = left + length(wx - cx, wy - cy)
+            from_m = float(left)
+            tx = float(wx)
+            ty = float(wy)
+            if length(tx - cx, ty - cy) > longest_sight:
+                from_m += length(tx - x, ty - y)
+                tx = x
+                ty = y
+            cost = from_m + length(tx - cx, ty - cy)
             if cost < potential_at(potential, other, cx, cy):
-                potential[other, 0] = left
-                potential[other, 1] = wx
-                potential[other, 2] = wy
+                potential[other, 0] = from_m
+                potential[other, 1] = tx
+                potential[other, 2] = ty
+                spreads[other] = -1.0
+                if grid.flat:
+                    spreads[other] = spread_beside(spread, here, x, y, tx, ty, cx, cy)
                 size = heap_push(keys, items, size, cost, other)
     state[0] = size
     state[1] = reached

@@ -38,7 +38,7 @@ class WaveFront:
 
     It stays on the grid as it was when the wave began: a door that moves later changes nothing.
     Where the body's bound on cells on edges in a row can bind (`LayeredGrid.bounds_edges`), they
-    are counted, and the wave spreads at once. Memory is 17 bytes a cell, and 16 for each entry of
+    are counted, and the wave spreads at once. Memory is 21 bytes a cell, and 16 for each entry of
     the heap.
     """
 
@@ -63,6 +63,7 @@ class WaveFront:
         """`PotentialValues` of the cells that are settled."""
         self.settled: NDArray[np.uint8] = np.empty(cells, dtype=np.uint8)
         """(N,): 1 where a cell's values are final."""
+        self._spreads = np.empty(cells, dtype=np.float32)
         self._heap = np.empty(8 * cells + 1), np.empty(8 * cells + 1, dtype=np.int64)
         self._state = np.zeros(2, dtype=np.int64)
         self._ground = self.arrays, row, radius_m, wave.value
@@ -71,7 +72,9 @@ class WaveFront:
             classes = grid.traversability.of(kind_of(body)).classes
             self._counted = body.edge_cells, classes
         x, y = goal if wave is Wave.SIGHT else anchor_at(self.arrays, row, cell)
-        kernels.begin_wave(cell, x, y, self.values, self.settled, *self._heap, self._state)
+        kernels.begin_wave(
+            cell, x, y, self.values, self.settled, self._spreads, *self._heap, self._state
+        )
 
     def anchors(self, cells: NDArray[np.int64]) -> NDArray[np.float64]:
         """The points of some cells (K,) that the wave leads over, float64 (K, 2), metres."""
@@ -118,6 +121,7 @@ class WaveFront:
             *self._ground,
             self.values,
             self.settled,
+            self._spreads,
             *self._heap,
             self._state,
             targets,

@@ -67,6 +67,8 @@ class State:
     def __init__(self, capacity: int) -> None:
         self.capacity = capacity
         self.alive = np.zeros(capacity, dtype=np.bool_)
+        self._found: dict[int | None, Slots] = {}
+        """All that `live` (None) and `of_kind` found since somebody came or left last."""
         self.ids = np.zeros(capacity, dtype=np.int64)
         self.arrivals = np.zeros(capacity, dtype=np.int64)
         self.kinds = np.zeros(capacity, dtype=np.uint8)
@@ -126,12 +128,16 @@ class State:
         return Look(*self.looks[self._slots[avatar_id]].tolist())
 
     def live(self) -> Slots:
-        """Slots of everyone, ascending, int (N,)."""
-        return np.flatnonzero(self.alive)
+        """Slots of everyone, ascending, int (N,); they are to be read only, as those of a kind."""
+        if None not in self._found:
+            self._found[None] = np.flatnonzero(self.alive)
+        return self._found[None]
 
     def of_kind(self, kind: int) -> Slots:
         """Slots of all people or of all actors, ascending, int (N,)."""
-        return np.flatnonzero(self.alive & (self.kinds == kind))
+        if kind not in self._found:
+            self._found[kind] = np.flatnonzero(self.alive & (self.kinds == kind))
+        return self._found[kind]
 
     def add(
         self,
@@ -160,6 +166,7 @@ class State:
         if avatar_id is None:
             avatar_id = self._take_id()
         slot = self._free.pop()
+        self._found.clear()
         self.alive[slot] = True
         self.ids[slot] = avatar_id
         self._arrived += 1
@@ -195,7 +202,7 @@ class State:
         live = self.live()
         return {
             "slots": live,
-            **{name: getattr(self, name)[live] for name in _COLUMNS},
+            **{name: getattr(self, name).take(live, axis=0) for name in _COLUMNS},
             "free": list(self._free),
             "arrived": self._arrived,
             "id_blocks": [[self._next_id, self._ids_end], *map(list, self._more_ids)],
@@ -213,6 +220,7 @@ class State:
         free = np.asarray(saved["free"], dtype=np.int64).tolist()
         if sorted([*slots.tolist(), *free]) != list(range(self.capacity)):
             raise ValueError(f"these are not the {self.capacity} slots of a state")
+        self._found.clear()
         self.alive[:] = False
         self.alive[slots] = True
         for name in _COLUMNS:
@@ -236,6 +244,7 @@ class State:
     def remove(self, avatar_id: int) -> int:
         """Take an avatar out; returns the slot that is free now."""
         slot = self._slots.pop(avatar_id)
+        self._found.clear()
         self.alive[slot] = False
         self.names[slot] = ""
         self._free.append(slot)
