@@ -254,6 +254,7 @@ async def hosted_zone(
             world,
             people,
             zone.exits,
+            {each.name: each.copies for each in zones if each.copies is not None},
             broker,
             subjects,
             store,
