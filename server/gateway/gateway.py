@@ -16,6 +16,8 @@ from esplanade.server.assets import Assets
 from esplanade.server.cluster.ownership import ownerships
 from esplanade.server.cluster.processes import GATEWAY
 from esplanade.server.cluster.world_rows import ClusterWorld, file_of, world_kept
+from esplanade.server.copies import Copies
+from esplanade.server.gateway.meshes import Meshes
 from esplanade.server.gateway.operators_port import ClusterZones, operators_port
 from esplanade.server.gateway.reception import Reception
 from esplanade.server.heartbeat import Heartbeat
@@ -84,9 +86,10 @@ async def gateway(
             stack.callback(each.close)
         port, subjects = _port_of(sockets), Subjects(world.subject)
         kept = await stack.enter_async_context(shared(metrics))
+        assets = assets or Assets.load()
         reception = Reception(
             name,
-            world.start,
+            copied.get(world.start) or Copies((world.start,), settings.max_clients),
             store,
             broker,
             subjects,
@@ -94,9 +97,8 @@ async def gateway(
             metrics,
             kept,
             Entrance(settings, kept, metrics),
-            copied.get(world.start),
+            Meshes(store, assets),
         )
-        assets = assets or Assets.load()
         zones_of = ClusterZones(name, world.start, kept.store, subjects, broker_of)
         private = await stack.enter_async_context(
             operators_port(settings, kept, metrics, assets, _Ready(reception), zones_of, port, tls)

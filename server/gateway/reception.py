@@ -17,6 +17,7 @@ from esplanade.server.cluster.seat_records import record_in
 from esplanade.server.cluster.seats import ClusterSeat
 from esplanade.server.copies import Copies
 from esplanade.server.gateway.cluster_seats import ClusterSeats
+from esplanade.server.gateway.meshes import Meshes
 from esplanade.server.gateway.occupant import Occupant
 from esplanade.server.gateway.views import Views, ZonesAwayError
 from esplanade.server.gateway.zone_view import ZoneView
@@ -67,7 +68,7 @@ class Reception:
     def __init__(
         self,
         gateway: str,
-        start: str,
+        start: Copies,
         store: Store,
         broker: Client,
         subjects: Subjects,
@@ -75,17 +76,16 @@ class Reception:
         metrics: Metrics,
         kept: Kept,
         entrance: Entrance,
-        copies: Copies | None = None,
+        meshes: Meshes,
     ) -> None:
-        """`gateway` is the name of this process, `start` the zone that newcomers enter, `copies`
-        those that it has. `store` is that of this process alone, `kept` what all processes
-        share."""
+        """`gateway` is the name of this process, `start` the zone that newcomers enter. `store` is
+        that of this process alone, `kept` what all processes share."""
         self.views = Views(
-            gateway, store, broker, subjects, settings, metrics, self.depart, self.confirm
+            gateway, store, broker, subjects, settings, metrics, meshes, self.depart, self.confirm
         )
         self._gateway = gateway
-        self._start = start
-        self._copies = copies
+        self._start = start.names[0]
+        self._copies = start if len(start.names) > 1 else None
         self._broker = broker
         self._subjects = subjects
         self._settings = settings

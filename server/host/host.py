@@ -2,8 +2,8 @@
 
 import asyncio
 import tempfile
-from collections.abc import Iterable, Sequence
-from contextlib import suppress
+from collections.abc import AsyncIterator, Iterable, Sequence
+from contextlib import asynccontextmanager, suppress
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -57,8 +57,10 @@ class HostedWorld:
         return next((k, zone) for k, zone in enumerate(self.zones) if zone.name == name)
 
 
-async def read_world(store: Store, settings: ServerSettings) -> HostedWorld:
-    """Read the world of the cluster from the database.
+@asynccontextmanager
+async def world_of_cluster(store: Store, settings: ServerSettings) -> AsyncIterator[HostedWorld]:
+    """Read the world of the cluster from the database. Its files are there until the end: meshes
+    are read again when a zone is built.
 
     Raises
     ------
@@ -72,7 +74,7 @@ async def read_world(store: Store, settings: ServerSettings) -> HostedWorld:
         kept = await store.read(world_kept)
         named = settings.model_copy(update={"world": path})
         zones = await asyncio.to_thread(zones_to_serve, named)
-    return HostedWorld(kept, sorted(zones, key=lambda zone: zone.name))
+        yield HostedWorld(kept, sorted(zones, key=lambda zone: zone.name))
 
 
 class Host:
