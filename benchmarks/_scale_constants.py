@@ -13,6 +13,9 @@ class Constants:
 
     tick_hz: float = 20.0
     """Ticks a second."""
+    host_tick_us: float = 4200.0
+    """Processor time of a host beside its zone and messages, in the time of a tick: renewals,
+    checkpoints, seats, threads (`benchmarks.cluster crowd`, 100 and 300 people)."""
     zone_tick_us: float = 150.0
     """Processor time of a zone's tick with nobody in it (`benchmarks.server --processor-time`)."""
     zone_person_us: float = 1.7
@@ -25,9 +28,12 @@ class Constants:
     """Bytes of a frame that tells nothing, with subject and head."""
     frame_avatar_bytes: float = 24.5
     """Bytes of a frame for each avatar (`benchmarks.frames`)."""
-    gateway_tick_us: float = 450.0
-    """Of a gateway with nobody at it, in the time of a tick (`benchmarks.cluster crowd`)."""
-    broker_message_us: float = 67.0
+    gateway_tick_us: float = 1400.0
+    """Of a gateway that people are at, beside them, in the time of a tick; 830 with nobody at it
+    (`benchmarks.cluster crowd`, and `check`, where a gateway shows three zones)."""
+    gateway_zone_us: float = 1300.0
+    """The same for each zone that it shows, beside messages and viewers."""
+    broker_message_us: float = 100.0
     """Of the broker for each message that it takes or passes on (`benchmarks.cluster check`)."""
     message_us: float = 60.0
     """To send or take in one message of the broker, on either side (`benchmarks.frames`)."""
@@ -38,8 +44,11 @@ class Constants:
     """Most bytes a viewer is sent a second: its budget, which a crowd uses up."""
     lone_viewer_bytes_s: float = 700.0
     """Bytes of a viewer who sees nobody else."""
-    seen_avatar_bytes_s: float = 330.0
-    """Bytes more for each avatar in view, up to the budget (`benchmarks.viewer`)."""
+    seen_avatar_bytes_s: float = 217.0
+    """Bytes more for each avatar in view, up to the budget (`benchmarks.cluster check`)."""
+    seen_part: float = 0.34
+    """Part of the others in a zone whom one has in view: of those who stand anywhere on a field of
+    100 m, the part within 40 m."""
     most_seen: float = 100.0
     """Most avatars in view."""
     input_bytes: float = 40.0

@@ -30,12 +30,14 @@ def costs_of(second: Second, constants: Constants) -> Costs:
     frames = second.frames
     gateways = len(second.at_gateway)
     made = one.frame_make_us * people + one.message_us * used
-    tick = one.zone_tick_us * zones + one.zone_person_us * people
+    tick = (one.host_tick_us + one.zone_tick_us) * zones + one.zone_person_us * people
     read = one.frame_read_us * second.frame_people + one.message_us * frames
     # A batch of inputs goes up wherever a frame comes down.
     batches = one.message_us * frames
     carried = used + 2.0 * frames
-    seen = np.minimum(second.in_zone - 1, one.most_seen).clip(min=0)
+    shown = one.gateway_tick_us * gateways + one.gateway_zone_us * frames
+    others = (second.in_zone - 1).clip(min=0)
+    seen = np.minimum(one.seen_part * others, one.most_seen)
     viewer_bytes = np.minimum(
         one.lone_viewer_bytes_s + one.seen_avatar_bytes_s * seen, one.viewer_bytes_s
     )
@@ -43,9 +45,7 @@ def costs_of(second: Second, constants: Constants) -> Costs:
     upward = one.inputs_s * one.input_bytes * people
     return Costs(
         zone_cores=1e-6 * ticks * (tick + made + batches),
-        gateway_cores=1e-6
-        * ticks
-        * (one.gateway_tick_us * gateways + read + batches + one.viewer_us * people),
+        gateway_cores=1e-6 * ticks * (shown + read + batches + one.viewer_us * people),
         broker_cores=1e-6 * ticks * one.broker_message_us * carried,
         inside_bytes=ticks * frame_bytes + upward,
         out_bytes=float((viewer_bytes * second.in_zone).sum()),

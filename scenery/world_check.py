@@ -8,7 +8,7 @@ from rich.table import Table
 
 from esplanade.planning import LayeredGrid
 from esplanade.planning.routes.portal_reach import unreached_portals
-from esplanade.planning.scene.world_file import World
+from esplanade.planning.scene.world_file import World, ZoneEntry
 from esplanade.scenery.inventory import Inventory, take_inventory
 
 
@@ -21,6 +21,8 @@ class CheckedZone:
     exits: dict[str, str]
     """The zone that each portal leads to, by the portal's name."""
     unreached: tuple[str, ...]
+    copies: tuple[str, ...] = ()
+    """The names of its copies, itself the first; empty where there are none."""
 
     @property
     def faults(self) -> tuple[str, ...]:
@@ -36,15 +38,17 @@ class CheckedZone:
             **self.inventory.figures(),
             "exits": self.exits,
             "portals_unreached": list(self.unreached),
+            "copies": list(self.copies),
         }
 
 
 def check_zones(world: World, cell_m: float) -> list[CheckedZone]:
     """Each zone of a world with what its scene holds, with all doors open."""
-    return [_checked(world, name, cell_m) for name in world.scenes]
+    return [_checked(world, zone, cell_m) for zone in world.file.zones]
 
 
-def _checked(world: World, name: str, cell_m: float) -> CheckedZone:
+def _checked(world: World, zone: ZoneEntry, cell_m: float) -> CheckedZone:
+    name = zone.name
     scene = world.scenes[name]
     opened = tuple(door.model_copy(update={"open": True}) for door in scene.doors)
     scene = scene.model_copy(update={"doors": opened})
@@ -52,17 +56,21 @@ def _checked(world: World, name: str, cell_m: float) -> CheckedZone:
     return CheckedZone(
         name,
         take_inventory(scene, cell_m),
-        {portal: zone for portal, (zone, _) in world.exits(name).items()},
+        {portal: to for portal, (to, _) in world.exits(name).items()},
         tuple(unreached_portals(grid, scene, world.arrivals(name))),
+        zone.copy_names if zone.copies > 1 else (),
     )
 
 
 def show(shown: Console, world: World, zones: list[CheckedZone]) -> None:
     """Print a table of the zones, with where their portals lead."""
     shown.print(f"[bold]{world.file.name}[/bold]  newcomers enter {world.file.start_zone}\n")
-    table = Table("zone", "scene", "cells", "exits", box=None, pad_edge=False)
+    copied = any(zone.copies for zone in zones)
+    more = ("copies",) if copied else ()
+    table = Table("zone", "scene", "cells", "exits", *more, box=None, pad_edge=False)
     for zone in zones:
         exits = ", ".join(f"{portal} → {to}" for portal, to in zone.exits.items()) or "none"
         found = zone.inventory
-        table.add_row(zone.name, found.name, str(found.cells), exits)
+        row = [zone.name, found.name, str(found.cells), exits]
+        table.add_row(*row, *([", ".join(zone.copies) or "none"] if copied else []))
     shown.print(table)

@@ -103,10 +103,19 @@ class Assets:
 
         The address holds a hash of the data, so that browsers may keep it for ever.
         """
-        digest = hashlib.sha256(body).hexdigest()[:8]
-        address = f"assets/{name}-{digest}.bin"
+        address = _address(name, body)
         path = f"/{address}"
         return Assets({**self._table, path: _asset(path, body)}), address
+
+    def add_mesh(self, triangles: bytes) -> None:
+        """Add the triangles of a mesh to this table, at `mesh_address`."""
+        path = f"/{mesh_address(triangles)}"
+        if path not in self._table:
+            self._table = {**self._table, path: _asset(path, triangles)}
+
+    def has(self, address: str) -> bool:
+        """Whether there is an asset at an address as seen from the page."""
+        return f"/{address}" in self._table
 
     def answer(self, request: Request) -> Response:
         """The response to a GET, whose body is left out where the request is a HEAD."""
@@ -137,6 +146,15 @@ class Assets:
             headers = {**asset.headers, "Content-Encoding": "gzip"}
             return Found(HTTPStatus.OK, asset.compressed, headers)
         return Found(HTTPStatus.OK, asset.body, asset.headers)
+
+
+def mesh_address(triangles: bytes) -> str:
+    """The address of the triangles of a mesh, as seen from the page."""
+    return _address("mesh", triangles)
+
+
+def _address(name: str, body: bytes) -> str:
+    return f"assets/{name}-{hashlib.sha256(body).hexdigest()[:8]}.bin"
 
 
 def _listed(lines: list[str]) -> list[str]:

@@ -85,7 +85,7 @@ def load_scene(settings: ServerSettings) -> LoadedScene:
     roster = None if settings.roster is None else _read_roster(settings.roster)
     if settings.crowd is None:
         scene = _read_scene(settings.scene or DEFAULT_SCENE)
-        triangles = None if scene.mesh is None else _triangles(scene.mesh)
+        triangles = None if scene.mesh is None else mesh_triangles(scene.mesh)
         return LoadedScene(scene, rules, roster, triangles)
     crowd = read_recording(settings.crowd, {name: getattr(settings, name) for name in READING})
     try:
@@ -155,7 +155,14 @@ def _read_scene(path: Path) -> Scene:
         raise LoadingError(str(error)) from None
 
 
-def _triangles(mesh: Path) -> bytes:
+def mesh_triangles(mesh: Path) -> bytes:
+    """The triangles of a mesh, as `LoadedScene.triangles` has them.
+
+    Raises
+    ------
+    LoadingError
+        It cannot be read, or has more than `MAX_TRIANGLES`.
+    """
     try:
         triangles = read_triangles(mesh)
     except MeshError as error:

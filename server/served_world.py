@@ -10,10 +10,11 @@ from typing import Any, Final
 import structlog
 
 from esplanade.planning import Scene
+from esplanade.server.copies import Copies
 from esplanade.server.loading import LoadingError
 from esplanade.server.metrics import Metrics
 from esplanade.server.net.front_door import FrontDoor
-from esplanade.server.net.hops import Destination, Hops
+from esplanade.server.net.hops import Destination, Doorway, Hops
 from esplanade.server.net.names import Names
 from esplanade.server.net.surroundings import MOST_NUMBERS, Surroundings
 from esplanade.server.served_zone import Process, ServedZone, served_zone
@@ -28,7 +29,7 @@ log = structlog.get_logger(__name__)
 
 
 class ServedWorld:
-    """The zones of a server by their names; newcomers enter the first.
+    """The zones of a server by their names; newcomers enter the first, or one of its copies.
 
     A zone that is the whole world has an empty name.
     """
@@ -185,10 +186,10 @@ class ServedWorld:
 
     def _join(self) -> None:
         """Let the portals lead to the zones that there are now."""
-        self.front_door.lead_to([zone.hub for zone in self.zones.values()])
+        self._open_front_door()
         for name, zone in self._to_serve.items():
             exits = {
-                portal: Destination(to, self.zones[to].hub, there)
+                portal: Destination(self._doorway(to), there)
                 for portal, (to, there) in zone.exits.items()
             }
             self._hops.join(name, self.zones[name].hub, exits)
@@ -199,6 +200,18 @@ class ServedWorld:
             }
             if (own := self.zones[name].travel) is not None:
                 own.open(zone.loaded.scene.portals, ways)
+
+    def _doorway(self, zone: str) -> Doorway:
+        """The way into a zone, or into one of its copies."""
+        served = self._to_serve[zone]
+        copies = served.copies or Copies((zone,), served.settings.max_clients)
+        return Doorway(copies, {name: self.zones[name].hub for name in copies.names})
+
+    def _open_front_door(self, *, and_no_more: bool = False) -> None:
+        """Let newcomers into the zones that there are now."""
+        hubs = [zone.hub for zone in self.zones.values()]
+        first = self._doorway(next(iter(self.zones)))
+        self.front_door.lead_to(first, hubs, and_no_more=and_no_more)
 
     def _open(self, zone: ServedZone) -> None:
         zone.open(lambda: self._has_ended(zone))
@@ -218,7 +231,7 @@ class ServedWorld:
                     await asyncio.sleep(old.world.tick_s)
         except TimeoutError:
             log.warning("not everybody has come into the changed scene", zone=name)
-        self.front_door.lead_to([zone.hub for zone in self.zones.values()], and_no_more=True)
+        self._open_front_door(and_no_more=True)
         await old.close(replaced=True)
         await self._stacks.pop(old).aclose()
         new.keep_from_now()

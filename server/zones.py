@@ -7,8 +7,9 @@ from typing import Any
 
 from esplanade.planning import LayeredGrid, Portal, Scene
 from esplanade.planning.routes.portal_reach import unreached_portals
-from esplanade.planning.scene.world_file import World, WorldError, read_world
+from esplanade.planning.scene.world_file import World, WorldError, WorldFile, read_world
 from esplanade.server.building import with_roster
+from esplanade.server.copies import Copies
 from esplanade.server.loading import LoadedScene, LoadingError, load_scene, tell_crowd
 from esplanade.server.populating import default_roster
 from esplanade.server.roster import Roster
@@ -30,6 +31,8 @@ class ZoneToServe:
     """The names of the portals by which actors leave too."""
     arrivals: Sequence[tuple[float, float, float]] = ()
     """The places x, y, z, metres, at which people come in from other zones."""
+    copies: Copies | None = None
+    """The zone with its copies, of which it may be one; None where there are none."""
 
 
 def zones_to_serve(settings: ServerSettings) -> list[ZoneToServe]:
@@ -46,8 +49,19 @@ def zones_to_serve(settings: ServerSettings) -> list[ZoneToServe]:
             tell_crowd(settings.crowd, loaded.crowd)
         return [ZoneToServe(settings, with_roster(loaded, settings))]
     world = _read(settings.world)
-    zones = [_zone(world, place, settings) for place in range(len(world.file.zones))]
+    zones = [_zone(world, place, settings) for place in range(len(world.file.entries))]
     return sorted(zones, key=lambda zone: zone.name != world.file.start_zone)
+
+
+def copies_in(file: WorldFile, most_people: int) -> dict[str, Copies]:
+    """The zones that have copies, by the name of each copy; no more than `most_people` are in any
+    zone."""
+    return {
+        name: Copies(zone.copy_names, min(zone.people or most_people, most_people))
+        for zone in file.zones
+        if zone.copies > 1
+        for name in zone.copy_names
+    }
 
 
 def without_actors(zone: ZoneToServe) -> ZoneToServe:
@@ -67,7 +81,10 @@ def described_portals(zone: ZoneToServe, others: Mapping[str, Scene]) -> dict[st
         }
         for portal in zone.loaded.scene.portals
     ]
-    return {"zone": zone.name, "portals": portals}
+    described: dict[str, Any] = {"zone": zone.name, "portals": portals}
+    if zone.copies is not None:
+        described["copy"] = zone.copies.names.index(zone.name) + 1
+    return described
 
 
 def check_portals(zone: ZoneToServe, grid: LayeredGrid) -> None:
@@ -100,7 +117,7 @@ def _read(path: Path) -> World:
 
 
 def _zone(world: World, place: int, settings: ServerSettings) -> ZoneToServe:
-    entry = world.file.zones[place]
+    entry = world.file.entries[place]
     own = settings.model_copy(
         update={
             "scene": world.paths[entry.name],
@@ -119,6 +136,7 @@ def _zone(world: World, place: int, settings: ServerSettings) -> ZoneToServe:
         world.exits(entry.name),
         world.exits_of_actors(entry.name),
         world.arrivals(entry.name),
+        copies_in(world.file, settings.max_clients).get(entry.name),
     )
 
 

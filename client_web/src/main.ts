@@ -37,12 +37,12 @@ const locks =
     crypto.getRandomValues(new Uint32Array(3)).join("-"),
   );
 const seats = new Seats(sessionStorage, localStorage, locks, Date.now);
-const { rest, ...wish } = readAddress(location.hash);
+const { rest, zone, ...wish } = readAddress(location.hash);
 // Secrets are kept in memory alone: not where others read over a shoulder, nor in the history.
 if (wish.operator !== null || wish.admission !== null) {
   history.replaceState(history.state, "", location.pathname + location.search + rest);
 }
-const session = new Session(view, seats, socketAddress(document.baseURI), calm, wish);
+const session = new Session(view, seats, socketAddress(document.baseURI, zone), calm, wish);
 
 listenToPointer(picture, {
   orbit: (yaw, pitch) => {

@@ -28,6 +28,10 @@ MAX_FILE_BYTES: Final = 2**20
 MAX_ZONES: Final = 16
 MAX_EXITS: Final = 256
 
+MAX_COPIES: Final = 8
+MOST_PEOPLE: Final = 4000
+MAX_ZONE_NAME: Final = 32
+
 ZoneName = Annotated[str, StringConstraints(pattern=r"^[a-z0-9][a-z0-9-]{0,31}$")]
 
 
@@ -44,8 +48,15 @@ class ZoneEntry(_Part):
     """The scene's file, named relative to the world's file."""
     actors: Annotated[int, Field(ge=0, le=1000)] | None = None
     """The number of actors that walk about in it; as many as the server has without it."""
-    people: Annotated[int, Field(ge=1, le=4000)] | None = None
+    people: Annotated[int, Field(ge=1, le=MOST_PEOPLE)] | None = None
     """The most people who may be in it; as many as in the whole world without it."""
+    copies: Annotated[int, Field(ge=1, le=MAX_COPIES)] = 1
+    """The most copies of it that there are at a time; `people` may be in each of them."""
+
+    @property
+    def copy_names(self) -> tuple[str, ...]:
+        """The names of all its copies: the first has the name of the zone, then come -2, -3."""
+        return (self.name, *(f"{self.name}-{k}" for k in range(2, self.copies + 1)))
 
 
 class PortalOfZone(_Part):
@@ -88,12 +99,30 @@ class WorldFile(_Part):
         """The name of the zone that newcomers enter."""
         return self.start or self.zones[0].name
 
+    @property
+    def entries(self) -> tuple[ZoneEntry, ...]:
+        """All zones, and each copy of one as a zone of its own."""
+        return tuple(
+            zone.model_copy(update={"name": name, "copies": 1})
+            for zone in self.zones
+            for name in zone.copy_names
+        )
+
+    def original(self, zone: str) -> str:
+        """The name of the zone that another is a copy of; that of any other zone itself."""
+        return next(each.name for each in self.zones if zone in each.copy_names)
+
     def _wrong_names(self) -> Iterator[str]:
-        known: set[str] = set()
+        known = {zone.name for zone in self.zones}
+        seen: set[str] = set()
         for i, zone in enumerate(self.zones):
-            if zone.name in known:
+            if zone.name in seen:
                 yield f"zones.{i}.name: the name {zone.name!r} is taken"
-            known.add(zone.name)
+            seen.add(zone.name)
+            yield from (f"zones.{i}.copies: {fault}" for fault in _wrong_copies(zone, known))
+        number = sum(zone.copies for zone in self.zones)
+        if number > max(MAX_ZONES, len(self.zones)):
+            yield f"zones: {number} with all copies, there may be {MAX_ZONES}"
         if self.start is not None and self.start not in known:
             yield f"start: {_no_zone(self.start, known)}"
 
@@ -132,12 +161,13 @@ class World:
 
     file: WorldFile
     paths: Mapping[str, Path]
-    """The scene's file of each zone, by the zone's name."""
+    """The scene's file of each zone, by the zone's name; copies have that of the first."""
     scenes: Mapping[str, Scene]
-    """The scene of each zone, by the zone's name."""
+    """The scene of each zone, likewise."""
 
     def exits(self, zone: str) -> dict[str, tuple[str, Portal]]:
         """The zone and the portal there that each portal of a zone leads to, by its name."""
+        zone = self.file.original(zone)
         return {
             each.start.portal: (each.to.zone, self.scenes[each.to.zone].portal(each.to.portal))
             for each in self.file.exits
@@ -146,12 +176,14 @@ class World:
 
     def exits_of_actors(self, zone: str) -> frozenset[str]:
         """The names of the portals of a zone that let actors out."""
+        zone = self.file.original(zone)
         return frozenset(
             each.start.portal for each in self.file.exits if each.start.zone == zone and each.actors
         )
 
     def arrivals(self, zone: str) -> list[tuple[float, float, float]]:
         """The places x, y, z, metres, at which people from other zones come into a zone."""
+        zone = self.file.original(zone)
         scene = self.scenes[zone]
         ends = {each.to.portal for each in self.file.exits if each.to.zone == zone}
         return [scene.portal(name).arrival_place for name in sorted(ends)]
@@ -168,14 +200,7 @@ def read_world(path: Path) -> World:
         It holds no world, a scene cannot be read, or a portal leads nowhere.
     """
     data = read_bounded(path, MAX_FILE_BYTES)
-    try:
-        text = decoded(data).text
-    except ValueError as error:
-        raise WorldError(path, (str(error),)) from None
-    try:
-        file = WorldFile.model_validate_json(text)
-    except ValidationError as error:
-        raise _error(path, text, faults_of(error)) from None
+    file, text = parse_world(path, data)
     faults: dict[str, Loc] = {}
     paths = {zone.name: path.parent / zone.scene for zone in file.zones}
     scenes = {}
@@ -191,7 +216,43 @@ def read_world(path: Path) -> World:
     faults |= _wrong_portals(file, scenes)
     if faults:
         raise _error(path, text, faults)
-    return World(file, paths, scenes)
+    originals = {zone.name: file.original(zone.name) for zone in file.entries}
+    return World(
+        file,
+        {name: paths[original] for name, original in originals.items()},
+        {name: scenes[original] for name, original in originals.items()},
+    )
+
+
+def parse_world(path: Path, data: bytes) -> tuple[WorldFile, str]:
+    """The world that the bytes of a file hold, and their text; scenes are not looked for.
+
+    Raises
+    ------
+    WorldError
+        They hold no world; its message begins with `path`.
+    """
+    try:
+        text = decoded(data).text
+    except ValueError as error:
+        raise WorldError(path, (str(error),)) from None
+    try:
+        return WorldFile.model_validate_json(text), text
+    except ValidationError as error:
+        raise _error(path, text, faults_of(error)) from None
+
+
+def _wrong_copies(zone: ZoneEntry, known: set[str]) -> Iterator[str]:
+    """Faults of the copies of a zone, where `known` are the names of all zones of the file."""
+    copies = zone.copy_names[1:]
+    if copies and zone.people is None:
+        yield f"zone {zone.name!r} needs people: the most in each copy"
+    for name in copies:
+        if name in known:
+            yield f"a copy of {zone.name!r} has the name {name!r}, which is that of another zone"
+        elif len(name) > MAX_ZONE_NAME:
+            yield f"{name!r}, the name of a copy, has more than {MAX_ZONE_NAME} characters"
+            return
 
 
 def _wrong_portals(file: WorldFile, scenes: Mapping[str, Scene]) -> dict[str, Loc]:

@@ -75,6 +75,12 @@ def world_kept(connection: Connection) -> ClusterWorld:
     return ClusterWorld(row.name, row.subject, row.start, row.file)
 
 
+def file_of(connection: Connection, kept: ClusterWorld) -> bytes:
+    """The bytes of the world's file."""
+    chosen = select(CLUSTER_FILES.c.content).where(CLUSTER_FILES.c.name == kept.file)
+    return bytes(connection.execute(chosen).scalar_one())
+
+
 def write_files(connection: Connection, folder: Path) -> Path:
     """Write the files of the world into a folder, and return the path of the world's file.
 

@@ -37,7 +37,7 @@ def init(options: Namespace) -> int:
         raise UsageError(str(error)) from None
     kept, new = _write(options, partial(_keep_world, path, world, files), upgrading=True)
     told = f"new: {', '.join(new)}" if new else "no zone is new"
-    print(f"{kept.name}: {len(world.file.zones)} zones, newcomers enter {kept.start}; {told}")
+    print(f"{kept.name}: {len(world.file.entries)} zones, newcomers enter {kept.start}; {told}")
     return exit_codes.OK
 
 
@@ -76,7 +76,7 @@ def fence(options: Namespace) -> int:
 def _keep_world(
     path: Path, world: World, files: dict[str, bytes], connection: Connection
 ) -> tuple[ClusterWorld, list[str]]:
-    zones = [zone.name for zone in world.file.zones]
+    zones = [zone.name for zone in world.file.entries]
     file = world.file
     return keep_world(connection, file.name, file.start_zone, path.name, files, zones)
 

@@ -2,17 +2,20 @@
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
+from pathlib import Path
 from typing import Any
 
 from sqlalchemy import Connection, select
 
+from esplanade.planning.scene.world_file import MOST_PEOPLE, parse_world
 from esplanade.server.cluster import processes
 from esplanade.server.cluster.database_time import NOW_US
 from esplanade.server.cluster.ownership import ownerships
 from esplanade.server.cluster.processes import GATEWAY, HOST, ClusterProcess
 from esplanade.server.cluster.seats import people_by_zone
-from esplanade.server.cluster.world_rows import world_kept
+from esplanade.server.cluster.world_rows import file_of, world_kept
 from esplanade.server.cluster.zone_rows import checkpoints_ago_us
+from esplanade.server.zones import copies_in
 
 
 @dataclass(frozen=True)
@@ -28,6 +31,8 @@ class ZoneStatus:
     seats: int
     """People who belong there, those included whose connections are lost."""
     checkpoint_age_s: float | None
+    is_open: bool
+    """Whether a host is to own it; a copy of a zone is not open until the others are crowded."""
 
 
 @dataclass(frozen=True)
@@ -45,6 +50,8 @@ class Status:
         there = {each.name for each in self.processes if each.is_there}
         found = []
         for zone in self.zones:
+            if not zone.is_open:
+                continue
             if zone.lease_left_s is None or zone.lease_left_s <= 0.0:
                 found.append(f"zone {zone.zone}: nobody owns it")
             elif zone.host not in there:
@@ -69,7 +76,7 @@ class Status:
         lines.append(f"{'zone':<16}{'owner':<24}{'lease':>7}{'seats':>7}{'saved':>8}  epoch")
         for zone in self.zones:
             owned = zone.lease_left_s is not None and zone.lease_left_s > 0.0
-            owner = (zone.host or "-") if owned else "-"
+            owner = (zone.host or "-") if owned else ("-" if zone.is_open else "shut")
             lease = f"{zone.lease_left_s:.1f} s" if owned else "-"
             age = zone.checkpoint_age_s
             saved = "-" if age is None else f"{age:.1f} s"
@@ -104,6 +111,8 @@ def read_status(connection: Connection) -> Status:
     world = world_kept(connection)
     now_us = int(connection.execute(select(NOW_US)).scalar_one())
     seats, saved = people_by_zone(connection), checkpoints_ago_us(connection)
+    file, _ = parse_world(Path(world.file), file_of(connection, world))
+    copied = copies_in(file, MOST_PEOPLE)
     zones = [
         ZoneStatus(
             zone=each.zone,
@@ -113,6 +122,7 @@ def read_status(connection: Connection) -> Status:
             wanted_host=each.wanted_host,
             seats=seats.get(each.zone, 0),
             checkpoint_age_s=saved[each.zone] / 1e6 if each.zone in saved else None,
+            is_open=each.zone not in copied or each.zone in copied[each.zone].wanted(seats),
         )
         for each in ownerships(connection)
     ]

@@ -17,7 +17,7 @@ from esplanade.server.clustering.membership import Membership
 from esplanade.server.commanding import shipped_presets
 from esplanade.server.entrances import in_url, private_url
 from esplanade.server.gateway.gateway import gateway
-from esplanade.server.host.host import Host, read_world
+from esplanade.server.host.host import Host, world_of_cluster
 from esplanade.server.host.hosted_zone import HostProcess
 from esplanade.server.host.operators import host_operators
 from esplanade.server.keeping import kept_in
@@ -50,8 +50,10 @@ async def run_host(settings: ServerSettings, membership: Membership, zones: Sequ
         The world has no such zone, or one cannot be run.
     """
     interrupts.end_quietly()
-    async with _joined(membership, membership.name) as (store, broker):
-        world = await read_world(store, settings)
+    async with (
+        _joined(membership, membership.name) as (store, broker),
+        world_of_cluster(store, settings) as world,
+    ):
         known = [zone.name for zone in world.zones]
         for name in zones:
             if name not in known:

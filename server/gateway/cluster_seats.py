@@ -8,9 +8,10 @@ from typing import Any, Final, TypeVar
 import structlog
 
 from esplanade.protocol import CloseCode, ErrorCode, ProtocolError
-from esplanade.server.cluster import seats
+from esplanade.server.cluster import copy_rows, seats
 from esplanade.server.cluster.person_record import PersonRecord, encode_record
 from esplanade.server.cluster.seats import ClusterSeat
+from esplanade.server.copies import Copies
 from esplanade.server.store.store import Store, StoreError
 
 ANSWER_S: Final = 5.0
@@ -33,7 +34,7 @@ class ClusterSeats:
     Raises
     ------
     ProtocolError
-        (in `take`, `resume` and `has`) The database does not answer; one may come again.
+        (in `take`, `take_in`, `resume` and `has`) The database does not answer; one may come again.
     """
 
     def __init__(self, store: Store, gateway: str) -> None:
@@ -51,6 +52,17 @@ class ClusterSeats:
         return await self._certain(
             partial(_take, zone, names, self._gateway, encode_record(record))
         )
+
+    async def take_in(
+        self,
+        copies: Copies,
+        wished: str | None,
+        names: Iterable[tuple[str, str]],
+        record: PersonRecord,
+    ) -> tuple[ClusterSeat, str] | None:
+        """The same in the copy of a zone that the newcomer enters; None if all are full."""
+        state = encode_record(record)
+        return await self._certain(partial(_take_in, copies, wished, names, self._gateway, state))
 
     async def resume(self, token: str, keep_us: int) -> tuple[ClusterSeat, str] | None:
         """Take a seat again; returns it with its next token, or None if it is gone."""
@@ -118,6 +130,18 @@ def _take(
     zone: str, names: Iterable[tuple[str, str]], gateway: str, state: bytes, connection: Any
 ) -> tuple[ClusterSeat, str]:
     return seats.take_named(connection, zone, names, gateway, state)
+
+
+def _take_in(
+    copies: Copies,
+    wished: str | None,
+    names: Iterable[tuple[str, str]],
+    gateway: str,
+    state: bytes,
+    connection: Any,
+) -> tuple[ClusterSeat, str] | None:
+    zone = copy_rows.entered(connection, copies, wished)
+    return None if zone is None else seats.take_named(connection, zone, names, gateway, state)
 
 
 def _resume(

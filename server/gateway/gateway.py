@@ -11,10 +11,13 @@ from typing import Any
 
 from nats.aio.client import Client
 
+from esplanade.planning.scene.world_file import parse_world
 from esplanade.server.assets import Assets
 from esplanade.server.cluster.ownership import ownerships
 from esplanade.server.cluster.processes import GATEWAY
-from esplanade.server.cluster.world_rows import world_kept
+from esplanade.server.cluster.world_rows import ClusterWorld, file_of, world_kept
+from esplanade.server.copies import Copies
+from esplanade.server.gateway.meshes import Meshes
 from esplanade.server.gateway.operators_port import ClusterZones, operators_port
 from esplanade.server.gateway.reception import Reception
 from esplanade.server.heartbeat import Heartbeat
@@ -30,6 +33,7 @@ from esplanade.server.net.listening import bound_sockets
 from esplanade.server.net.tls import Tls
 from esplanade.server.settings import ServerSettings
 from esplanade.server.store.store import Store
+from esplanade.server.zones import copies_in
 
 
 @dataclass(frozen=True)
@@ -73,7 +77,8 @@ async def gateway(
     places = places_for_people(connections_wanted(settings))
     tls = _tls(settings)
     world = await store.read(world_kept)
-    zones = await store.read(_zones)
+    zones, file = await store.read(_zones), await store.read(partial(_file_of, world))
+    copied = copies_in(parse_world(Path(world.file), file)[0], settings.max_clients)
     metrics = process_metrics(zones, broker)
     async with AsyncExitStack() as stack:
         sockets = await bound_sockets(settings.host, settings.port)
@@ -81,9 +86,10 @@ async def gateway(
             stack.callback(each.close)
         port, subjects = _port_of(sockets), Subjects(world.subject)
         kept = await stack.enter_async_context(shared(metrics))
+        assets = assets or Assets.load()
         reception = Reception(
             name,
-            world.start,
+            copied.get(world.start) or Copies((world.start,), settings.max_clients),
             store,
             broker,
             subjects,
@@ -91,8 +97,8 @@ async def gateway(
             metrics,
             kept,
             Entrance(settings, kept, metrics),
+            Meshes(store, assets),
         )
-        assets = assets or Assets.load()
         zones_of = ClusterZones(name, world.start, kept.store, subjects, broker_of)
         private = await stack.enter_async_context(
             operators_port(settings, kept, metrics, assets, _Ready(reception), zones_of, port, tls)
@@ -139,6 +145,10 @@ async def _cancelled(task: "asyncio.Task[None]") -> None:
 
 def _zones(connection: Any) -> list[str]:
     return [each.zone for each in ownerships(connection)]
+
+
+def _file_of(world: ClusterWorld, connection: Any) -> bytes:
+    return file_of(connection, world)
 
 
 def _port_of(sockets: list[socket.socket]) -> int:

@@ -15,7 +15,9 @@ from esplanade.server.accounts.identity import Identity, digest_of
 from esplanade.server.cluster.person_record import PersonRecord
 from esplanade.server.cluster.seat_records import record_in
 from esplanade.server.cluster.seats import ClusterSeat
+from esplanade.server.copies import Copies
 from esplanade.server.gateway.cluster_seats import ClusterSeats
+from esplanade.server.gateway.meshes import Meshes
 from esplanade.server.gateway.occupant import Occupant
 from esplanade.server.gateway.views import Views, ZonesAwayError
 from esplanade.server.gateway.zone_view import ZoneView
@@ -66,7 +68,7 @@ class Reception:
     def __init__(
         self,
         gateway: str,
-        start: str,
+        start: Copies,
         store: Store,
         broker: Client,
         subjects: Subjects,
@@ -74,14 +76,16 @@ class Reception:
         metrics: Metrics,
         kept: Kept,
         entrance: Entrance,
+        meshes: Meshes,
     ) -> None:
         """`gateway` is the name of this process, `start` the zone that newcomers enter. `store` is
         that of this process alone, `kept` what all processes share."""
         self.views = Views(
-            gateway, store, broker, subjects, settings, metrics, self.depart, self.confirm
+            gateway, store, broker, subjects, settings, metrics, meshes, self.depart, self.confirm
         )
         self._gateway = gateway
-        self._start = start
+        self._start = start.names[0]
+        self._copies = start if len(start.names) > 1 else None
         self._broker = broker
         self._subjects = subjects
         self._settings = settings
@@ -223,14 +227,10 @@ class Reception:
                 ErrorCode.NAME_RESERVED, str(error), CloseCode.NAME_RESERVED
             ) from None
         view = await self.views.opened(self._start)
-        too_many = len(self._places) >= self._settings.max_clients
-        if too_many or view.people >= view.most_people:
-            most = self._settings.max_clients if too_many else view.most_people
-            raise ProtocolError(
-                ErrorCode.SERVER_FULL,
-                f"there is room for {most} people, all taken",
-                CloseCode.SERVER_FULL,
-            )
+        if len(self._places) >= self._settings.max_clients:
+            raise _full(self._settings.max_clients)
+        if self._copies is None and view.people >= view.most_people:
+            raise _full(view.most_people)
         record = PersonRecord(
             address=session.address,
             place=hello.at,
@@ -240,7 +240,13 @@ class Reception:
             wished=session.wished,
             look=tuple(hello.look or ()),
         )
-        return await self._seats.take(self._start, like(hello.name), record)
+        names, copies = like(hello.name), self._copies
+        if copies is None:
+            return await self._seats.take(self._start, names, record)
+        found = await self._seats.take_in(copies, session.wished_zone, names, record)
+        if found is None:
+            raise _full(copies.most_people * len(copies.names))
+        return found
 
     def _replace(self, who: Occupant) -> bool:
         """Part with a session of this gateway whose seat this one has taken; False if that one has
@@ -417,6 +423,11 @@ class Reception:
         self._tasks.discard(task)
         if not task.cancelled() and (error := task.exception()) is not None:
             log.error("a part of the gateway has failed", exc_info=error)
+
+
+def _full(most_people: int) -> ProtocolError:
+    text = f"there is room for {most_people} people, all taken"
+    return ProtocolError(ErrorCode.SERVER_FULL, text, CloseCode.SERVER_FULL)
 
 
 def _account_of(session: Session) -> str:

@@ -11,6 +11,7 @@ from nats.aio.msg import Msg
 
 from esplanade.protocol import CloseCode, ErrorCode, ProtocolError
 from esplanade.server.cluster.zone_rows import description_of
+from esplanade.server.gateway.meshes import Meshes
 from esplanade.server.gateway.zone_view import ZoneView
 from esplanade.server.link.answers import AnswerError, decode_answers
 from esplanade.server.link.subjects import Subjects
@@ -48,6 +49,7 @@ class Views:
         subjects: Subjects,
         settings: ServerSettings,
         metrics: Metrics,
+        meshes: Meshes,
         depart: Callable[[Session, bool], None],
         confirm: Callable[[Session], None],
     ) -> None:
@@ -60,6 +62,7 @@ class Views:
         self._subjects = subjects
         self._settings = settings
         self._metrics = metrics
+        self._meshes = meshes
         self._depart = depart
         self._confirm = confirm
 
@@ -91,6 +94,7 @@ class Views:
             except (StoreError, TimeoutError, DescriptionError) as error:
                 log.warning("a zone cannot be shown", zone=zone, why=str(error) or "no answer")
                 raise ZonesAwayError(zone) from None
+            await self._meshes.provide(description.mesh)
             view = ZoneView(
                 zone,
                 description,

@@ -2,8 +2,8 @@
 
 import asyncio
 import tempfile
-from collections.abc import Sequence
-from contextlib import suppress
+from collections.abc import AsyncIterator, Iterable, Sequence
+from contextlib import asynccontextmanager, suppress
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -12,10 +12,11 @@ from typing import Any, Final
 import structlog
 from nats.aio.msg import Msg
 
-from esplanade.server.cluster import ownership
+from esplanade.server.cluster import copy_rows, ownership
 from esplanade.server.cluster.processes import HOST, processes
 from esplanade.server.cluster.tenure import Claim, Tenure
 from esplanade.server.cluster.world_rows import ClusterWorld, world_kept, write_files
+from esplanade.server.copies import Copies
 from esplanade.server.heartbeat import Heartbeat
 from esplanade.server.host.hosted_zone import HostedZone, HostProcess, hosted_zone
 from esplanade.server.host.operators import HostOperators
@@ -32,6 +33,8 @@ CLAIM_S: Final = 0.5
 """A host without a zone asks for one so often, and at once where somebody gives one back."""
 LOOK_S: Final = 1.0
 """So often an owner looks whether another host is to have its zone."""
+UNWANTED_S: Final = 10.0
+"""A copy of a zone is shut when it has been empty and of no use for so long."""
 
 log = structlog.get_logger(__name__)
 
@@ -44,13 +47,20 @@ class HostedWorld:
     zones: list[ZoneToServe]
     """All zones, in the order of the world's file."""
 
+    @property
+    def copied(self) -> set[Copies]:
+        """The zones that have copies."""
+        return {zone.copies for zone in self.zones if zone.copies is not None}
+
     def zone(self, name: str) -> tuple[int, ZoneToServe]:
         """The place of a zone, and the zone."""
         return next((k, zone) for k, zone in enumerate(self.zones) if zone.name == name)
 
 
-async def read_world(store: Store, settings: ServerSettings) -> HostedWorld:
-    """Read the world of the cluster from the database.
+@asynccontextmanager
+async def world_of_cluster(store: Store, settings: ServerSettings) -> AsyncIterator[HostedWorld]:
+    """Read the world of the cluster from the database. Its files are there until the end: meshes
+    are read again when a zone is built.
 
     Raises
     ------
@@ -64,7 +74,7 @@ async def read_world(store: Store, settings: ServerSettings) -> HostedWorld:
         kept = await store.read(world_kept)
         named = settings.model_copy(update={"world": path})
         zones = await asyncio.to_thread(zones_to_serve, named)
-    return HostedWorld(kept, sorted(zones, key=lambda zone: zone.name))
+        yield HostedWorld(kept, sorted(zones, key=lambda zone: zone.name))
 
 
 class Host:
@@ -157,7 +167,8 @@ class Host:
         """Claim a zone, or wait for a while."""
         self._hint.clear()
         try:
-            claim = await self._store.write(partial(_claim, self.name, self._wanted))
+            copied = self._world.copied
+            claim = await self._store.write(partial(_claim, self.name, self._wanted, copied))
         except StoreError as error:
             log.warning("no zone can be claimed", why=str(error))
             claim = None
@@ -191,7 +202,7 @@ class Host:
             ) as hosted:
                 self.running = hosted
                 await self._operators.open(claim.zone, claim.epoch, hosted.operated)
-                ending = asyncio.create_task(self._end_when_told(hosted))
+                ending = asyncio.create_task(self._end_when_told(hosted, zone.copies))
                 log.info("open", zone=claim.zone, epoch=claim.epoch, host=self.name)
                 try:
                     await hosted.run()
@@ -207,8 +218,11 @@ class Host:
             renewing.cancel()
             await self._give_back(tenure)
 
-    async def _end_when_told(self, hosted: HostedZone) -> None:
-        """End a zone when this process is to stop, or when another host is to have it."""
+    async def _end_when_told(self, hosted: HostedZone, copies: Copies | None) -> None:
+        """End a zone when this process is to stop, when another host is to have it, or when it is a
+        copy that is of no use."""
+        loop = asyncio.get_running_loop()
+        wanted_s = loop.time()
         while not self._stop.is_set():
             with suppress(TimeoutError):
                 async with asyncio.timeout(LOOK_S):
@@ -216,6 +230,13 @@ class Host:
             with suppress(StoreError):
                 if await self._store.read(partial(_moves_on, hosted.tenure.claim)):
                     log.info("another host is to have the zone", zone=hosted.tenure.claim.zone)
+                    break
+                if copies is None or await self._store.read(
+                    partial(_is_wanted, copies, hosted.tenure.claim.zone)
+                ):
+                    wanted_s = loop.time()
+                elif loop.time() - wanted_s >= UNWANTED_S:
+                    log.info("the copy is shut", zone=hosted.tenure.claim.zone)
                     break
         hosted.ticker.stop()
 
@@ -246,12 +267,16 @@ def _write_files(folder: Path, connection: Any) -> Path:
     return write_files(connection, folder)
 
 
-def _claim(host: str, zones: list[str], connection: Any) -> Claim | None:
-    claimed = ownership.claim(connection, host, zones)
+def _claim(host: str, zones: list[str], copied: Iterable[Copies], connection: Any) -> Claim | None:
+    claimed = copy_rows.claim(connection, host, zones, copied)
     if claimed is not None:
         # The host that was to have it has it: from now on any host may follow.
         ownership.want(connection, claimed.zone, None)
     return claimed
+
+
+def _is_wanted(copies: Copies, zone: str, connection: Any) -> bool:
+    return copy_rows.is_wanted(connection, copies, zone)
 
 
 def _release(claim: Claim, connection: Any) -> None:

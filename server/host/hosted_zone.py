@@ -14,6 +14,7 @@ from nats.aio.client import Client
 from nats.aio.msg import Msg
 
 from esplanade.actors.warming import tables_ahead
+from esplanade.server.assets import mesh_address
 from esplanade.server.checkpoint.parts import Parts
 from esplanade.server.cluster.ownership import NotOwnerError
 from esplanade.server.cluster.tenure import Tenure
@@ -254,6 +255,7 @@ async def hosted_zone(
             world,
             people,
             zone.exits,
+            {each.name: each.copies for each in zones if each.copies is not None},
             broker,
             subjects,
             store,
@@ -285,7 +287,7 @@ async def hosted_zone(
             recorder_of(settings, world, zone.name, metrics, bulletin)
         )
         sender = FrameSender(broker, subjects, zone.name, ticker.whole)
-        digest = digest_of(zone.loaded.scene)
+        digest = digest_of(zone.loaded)
         checkpoints = Checkpointing(world, parts, store, claim, digest, packing, actor_portals)
         if CONSOLE not in found.parts:
             # Recovery finds the commands after a checkpoint by the place that it has in the audit.
@@ -383,7 +385,11 @@ def _description(
     zone: ZoneToServe, zones: Sequence[ZoneToServe], world: Zone, storeys: Sequence[float]
 ) -> ZoneDescription:
     scenes = {each.name: each.loaded.scene for each in zones}
+    triangles = zone.loaded.triangles
+    mesh = None if triangles is None else mesh_address(triangles)
     described = {"storeys": storeys, **described_portals(zone, scenes)}
+    if mesh is not None:
+        described["mesh"] = mesh
     scene = world.scene.model_dump(mode="json", exclude={"mesh", "portals"})
     return ZoneDescription(
         scene=msgpack.packb({**scene, **described}),
@@ -392,4 +398,5 @@ def _description(
         origin_m=world.origin_m,
         resume_seconds=zone.settings.resume_seconds,
         people=zone.settings.max_clients,
+        mesh=mesh,
     )

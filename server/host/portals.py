@@ -19,11 +19,12 @@ from nats.errors import Error as NatsError
 from esplanade.planning import Portal
 from esplanade.protocol.codes import NoticeCode
 from esplanade.protocol.messages import Notice
-from esplanade.server.cluster import seats
+from esplanade.server.cluster import copy_rows, seats
 from esplanade.server.cluster.hops import KEPT_S, Hop, KeptPlaces, Stage
 from esplanade.server.cluster.ownership import NotOwnerError
 from esplanade.server.cluster.person_record import encode_record
 from esplanade.server.cluster.tenure import Tenure
+from esplanade.server.copies import Copies
 from esplanade.server.host.hosted_people import HostedPeople
 from esplanade.server.link.subjects import Subjects
 from esplanade.server.metrics import Metrics
@@ -51,6 +52,7 @@ class Portals:
         world: Zone,
         people: HostedPeople,
         exits: Exits,
+        copied: Mapping[str, Copies],
         broker: Client,
         subjects: Subjects,
         store: Store,
@@ -58,9 +60,11 @@ class Portals:
         metrics: Metrics,
         most_people: int,
     ) -> None:
+        """`copied` are the zones that have copies, by name."""
         self._world = world
         self._people = people
         self._exits = exits
+        self._copied = copied
         self._broker = broker
         self._subjects = subjects
         self._store = store
@@ -122,6 +126,7 @@ class Portals:
         return True
 
     async def _hop(self, hop: Hop, destination: str, portal: Portal) -> None:
+        destination = await self._copy_of(destination)
         answer = await self._ask(hop, destination)
         if not hop.answered(hop.hops, kept=answer == KEPT):
             self._ended.labels("refused").inc()
@@ -143,6 +148,20 @@ class Portals:
         self._people.moved(hop.person, is_here=hop.stage is Stage.STAYED, at=at)
         self._ended.labels("made" if hop.stage is Stage.GONE else "given_up").inc()
         log.info("person goes", person=hop.person, to=destination, stage=hop.stage.name)
+
+    async def _copy_of(self, zone: str) -> str:
+        """The copy of a zone that somebody enters; the zone itself where it has none.
+
+        It is also that while the database does not answer, or all are full.
+        """
+        copies = self._copied.get(zone)
+        if copies is None:
+            return zone
+        try:
+            return await self._store.read(partial(_entered, copies)) or zone
+        except StoreError as error:
+            log.warning("copies cannot be told apart", zone=zone, why=str(error))
+            return zone
 
     async def _ask(self, hop: Hop, destination: str) -> bytes | None:
         """Ask for a place until there is an answer; None if there is none in time."""
@@ -179,6 +198,10 @@ class Portals:
                 continue
             zone = self._tenure.claim.zone
             hop.moved(is_here=seat is not None and (seat.zone, seat.hops) == (zone, hop.hops))
+
+
+def _entered(copies: Copies, connection: Any) -> str | None:
+    return copy_rows.entered(connection, copies)
 
 
 def _moved(

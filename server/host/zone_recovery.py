@@ -9,7 +9,6 @@ from typing import Any, Final
 import structlog
 
 from esplanade.actors import Population
-from esplanade.planning import Scene
 from esplanade.server.building import build_world
 from esplanade.server.checkpoint.errors import CheckpointError
 from esplanade.server.checkpoint.ids import Block
@@ -63,7 +62,7 @@ async def found_in(store: Store, zone: str, loaded: LoadedScene, tick_s: float) 
         return Found(seats=seats, travellers=travellers)
     fastest = max(1.0, float(parts.get(PACE, {}).get("factor", 1.0)))
     tick = kept.tick + round(fastest * kept.ago_us / 1e6 / tick_s) + SKIPPED_TICKS
-    if parts and parts[checkpointing.SCENE] != digest_of(loaded.scene):
+    if parts and parts[checkpointing.SCENE] != digest_of(loaded):
         log.info("the scene is another one than before, everybody goes to a spawn", zone=zone)
         parts = {}
     return Found(parts, tick, seats, travellers)
@@ -79,9 +78,13 @@ def _read(
     )
 
 
-def digest_of(scene: Scene) -> str:
-    """The digest by which scenes are told apart."""
-    return hashlib.sha256(scene.model_dump_json().encode()).hexdigest()
+def digest_of(loaded: LoadedScene) -> str:
+    """The digest by which scenes are told apart: of a mesh its triangles count, not its path."""
+    scene, triangles = loaded.scene, loaded.triangles
+    if triangles is None:
+        return hashlib.sha256(scene.model_dump_json().encode()).hexdigest()
+    described = scene.model_dump_json(exclude={"mesh"}).encode()
+    return hashlib.sha256(described + hashlib.sha256(triangles).digest()).hexdigest()
 
 
 def build(zone: ZoneToServe, place: int, found: Found) -> tuple[Population, Zone, list[float]]:

@@ -29,6 +29,8 @@ class ZoneDescription(BaseModel):
     resume_seconds: float
     people: Annotated[int, Field(ge=1)]
     """The most people who may be in the zone."""
+    mesh: str | None = None
+    """The address of the triangles of a building that is a mesh, as seen from the page."""
 
     @property
     def world_rules(self) -> Rules:

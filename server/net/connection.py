@@ -84,6 +84,8 @@ class Connection(HeardConnection):
         """Whether an HTTP answer is on its way: what the client sends meanwhile is not parsed."""
         self.take_at_once: Callable[[bytes], bool] | None = None
         """Takes the payload of a frame that was read whole, or says that it is for the parser."""
+        self.wished_zone: str | None = None
+        """The copy of the zone for newcomers that the request named."""
         self.identity: str | None = None
         """What a trusted proxy calls the client, if it has checked that."""
         self.descriptor = NONE

@@ -5,6 +5,7 @@ from collections.abc import Callable, Sequence
 from esplanade.protocol import CloseCode, ErrorCode, ProtocolError
 from esplanade.protocol.messages import Hello
 from esplanade.server.net.entrance import Entrance
+from esplanade.server.net.hops import Doorway
 from esplanade.server.net.hub import Hub
 from esplanade.server.net.session import Session
 from esplanade.server.net.sockets.reading import Reading
@@ -12,18 +13,21 @@ from esplanade.server.net.wishes import Wishes
 
 
 class FrontDoor:
-    """Hands each session on to a hub. Who has no seat enters the first of the zones."""
+    """Hands each session on to a hub. Who has no seat enters the first of the zones, or one of its
+    copies."""
 
     def __init__(self, entrance: Entrance, most_people: int) -> None:
         """In a world of several zones, no more than `most_people` are in all of them together."""
         self._hubs: list[Hub] = []
+        self._doorway: Doorway | None = None
         self._entrance = entrance
         self._most_people = most_people
         self._reading: Reading | None = None
 
-    def lead_to(self, hubs: Sequence[Hub], *, and_no_more: bool = False) -> None:
-        """Let newcomers enter the first of these hubs; people may still be in those of before,
-        unless `and_no_more` is said."""
+    def lead_to(self, doorway: Doorway, hubs: Sequence[Hub], *, and_no_more: bool = False) -> None:
+        """Let newcomers in by a doorway to one or some of these hubs; people may still be in those
+        of before, unless `and_no_more` is said."""
+        self._doorway = doorway
         before = [] if and_no_more else [hub for hub in self._hubs if hub not in hubs]
         self._hubs = [*hubs, *before]
         self.read_by(self._reading)
@@ -65,7 +69,7 @@ class FrontDoor:
         try:
             if hub is None:
                 self._check_room()
-                hub = self._first
+                hub = self._entered(session.wished_zone)
             session.enter(hub)
             hub.admit(session, hello)
         except ProtocolError:
@@ -104,6 +108,10 @@ class FrontDoor:
         """The hub in which the token of a hello takes a seat."""
         token = hello.resume
         return next((hub for hub in self._hubs if token and hub.has_seat(token)), None)
+
+    def _entered(self, wished: str | None) -> Hub:
+        """The hub of the zone, or of its copy, that a newcomer enters."""
+        return self._first if self._doorway is None else self._doorway.entered(wished)[1]
 
     def _check_room(self) -> None:
         if len(self._hubs) > 1 and sum(hub.people for hub in self._hubs) >= self._most_people:

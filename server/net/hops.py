@@ -16,6 +16,7 @@ import structlog
 from esplanade.planning import Portal
 from esplanade.protocol import NoticeCode, ProtocolError
 from esplanade.protocol.messages import Notice
+from esplanade.server.copies import Copies
 from esplanade.server.metrics import Metrics
 from esplanade.server.net import frames
 from esplanade.server.net.arrivals import Arrival
@@ -31,11 +32,25 @@ log = structlog.get_logger(__name__)
 
 
 @dataclass(frozen=True)
-class Destination:
-    """A portal of a zone, with the hub of the zone."""
+class Doorway:
+    """The hub of a zone, or those of its copies."""
 
-    zone: str
-    hub: Hub
+    copies: Copies
+    hubs: Mapping[str, Hub]
+    """The hub of each copy, by its name."""
+
+    def entered(self, wished: str | None = None) -> tuple[str, Hub]:
+        """The copy that somebody enters, who may wish for one; the first where all are full."""
+        people = {name: hub.people for name, hub in self.hubs.items()}
+        name = self.copies.entered(people, wished) or self.copies.names[0]
+        return name, self.hubs[name]
+
+
+@dataclass(frozen=True)
+class Destination:
+    """A portal of a zone, with the hubs by which one enters the zone."""
+
+    doorway: Doorway
     portal: Portal
 
 
@@ -83,6 +98,7 @@ class Hops:
         Somebody who finds none is told so.
         """
         origin, to = self._hubs[zone], self._exits[zone][portal]
+        copy, hub = to.doorway.entered()
         avatar_id = session.avatar_id
         if avatar_id is None:
             return False
@@ -90,8 +106,8 @@ class Hops:
         def fail(why: str) -> None:
             self._ended.labels("refused").inc()
             origin.stays(avatar_id)
-            arguments = {"zone": to.zone, "why": why}
-            text = f"you cannot go to {to.zone} now: {why}"
+            arguments = {"zone": copy, "why": why}
+            text = f"you cannot go to {copy} now: {why}"
             notice = Notice(text=text, notice=NoticeCode.NOT_LET_IN, arguments=arguments)
             session.outbox.post(frames.message(notice))
 
@@ -106,18 +122,18 @@ class Hops:
             session.name,
             to.portal.arrival_place,
             origin.look_of(avatar_id),
-            to.zone,
+            copy,
             to.portal.name,
             until_s=origin.now_s + LONGEST_S,
             release=release,
             fail=fail,
         )
         try:
-            to.hub.expect(arrival)
+            hub.expect(arrival)
         except ProtocolError as full:
             fail(full.text)
             return False
-        log.info("person goes", id=avatar_id, name=session.name, zone=zone, to=to.zone)
+        log.info("person goes", id=avatar_id, name=session.name, zone=zone, to=copy)
         return True
 
 

@@ -30,6 +30,7 @@ from esplanade.server.net.root_path import RootPath
 from esplanade.server.net.session import Reception, Session
 from esplanade.server.net.sockets.reading import Reading, reading
 from esplanade.server.net.tls import Tls
+from esplanade.server.net.wished_zone import wished_zone
 from esplanade.server.settings import ServerSettings
 
 log = structlog.get_logger(__name__)
@@ -205,6 +206,7 @@ class Listener:
             return within
         if path_of(within) != SOCKET_PATH:
             return self._assets.answer(within)
+        connection.wished_zone = wished_zone(within)
         return self._refusal(connection.client_address)
 
     def _refusal(self, address: str) -> Response | None:

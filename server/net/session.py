@@ -186,6 +186,11 @@ class Session:
         """The name that a trusted proxy has for the client; None without one."""
         return self._connection.identity
 
+    @property
+    def wished_zone(self) -> str | None:
+        """The copy of the zone for newcomers that the address named which the client called."""
+        return self._connection.wished_zone
+
     def enter(self, hub: SessionRequests) -> None:
         """Have another fulfil the requests from now on: the hub of the zone where the person is."""
         self._hub = hub

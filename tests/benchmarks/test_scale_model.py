@@ -60,13 +60,14 @@ def test_costs_are_sums_of_the_constants() -> None:
     second = simulate(replace(PLAN, zones=1, people=100), constants, seeded()).seconds[-1]
     costs = costs_of(second, constants)
     ticks = constants.tick_hz
-    tick_us = constants.zone_tick_us + 100 * constants.zone_person_us
+    tick_us = constants.host_tick_us + constants.zone_tick_us + 100 * constants.zone_person_us
     made_us = constants.message_us + 100 * constants.frame_make_us
     pairs = second.frames
     batches_us = pairs * constants.message_us
     assert costs.zone_cores == pytest.approx(1e-6 * ticks * (tick_us + made_us + batches_us))
     gateways_us = len(second.at_gateway) * constants.gateway_tick_us
-    read_us = pairs * (constants.message_us + 100 * constants.frame_read_us)
+    shown_us = constants.gateway_zone_us + constants.message_us
+    read_us = pairs * (shown_us + 100 * constants.frame_read_us)
     edge_us = gateways_us + read_us + batches_us + 100 * constants.viewer_us
     assert costs.gateway_cores == pytest.approx(1e-6 * ticks * edge_us)
     carried = 1 + 2 * pairs
@@ -74,7 +75,10 @@ def test_costs_are_sums_of_the_constants() -> None:
     frame = constants.frame_head_bytes + 100 * constants.frame_avatar_bytes
     upward = 100 * constants.inputs_s * constants.input_bytes
     assert costs.inside_bytes == pytest.approx(ticks * frame + upward)
-    assert costs.out_bytes == 100 * constants.viewer_bytes_s
+    seen_bytes = constants.seen_avatar_bytes_s * constants.seen_part * 99
+    assert costs.out_bytes == pytest.approx(100 * (constants.lone_viewer_bytes_s + seen_bytes))
+    crowd = simulate(replace(PLAN, zones=1, people=400), constants, seeded()).seconds[-1]
+    assert costs_of(crowd, constants).out_bytes == pytest.approx(400 * constants.viewer_bytes_s)
 
 
 def test_pauses_are_of_those_who_were_there() -> None:

@@ -48,3 +48,20 @@ def test_a_world_that_cannot_be_read_is_wrong_usage(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert "cannot be read" in refused(capsys, "check", "--world", tmp_path)
+
+
+def test_copies_are_told_with_their_zone(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    zones = [
+        {"name": "yard", "scene": "yard.json"},
+        {"name": "hall", "scene": "hall.json", "people": 40, "copies": 2},
+    ]
+    assert run("check", "--world", write(tmp_path, zones=zones)) == exit_codes.OK
+    assert "hall, hall-2" in capsys.readouterr().out
+    assert run("check", "--world", tmp_path / "town.json", "--json") == exit_codes.OK
+    told = json.loads(capsys.readouterr().out)["zones"]
+    assert {name: zone["copies"] for name, zone in told.items()} == {
+        "yard": [],
+        "hall": ["hall", "hall-2"],
+    }

@@ -130,9 +130,11 @@ class Client:
 
 
 @asynccontextmanager
-async def connected(port: int, source: str = "127.0.0.1") -> AsyncIterator[Client]:
-    """A connection that has not said hello."""
-    url = f"ws://127.0.0.1:{port}/ws"
+async def connected(
+    port: int, source: str = "127.0.0.1", zone: str | None = None
+) -> AsyncIterator[Client]:
+    """A connection that has not said hello; its address may wish for a zone."""
+    url = f"ws://127.0.0.1:{port}/ws" + (f"?zone={zone}" if zone else "")
     # Without a bound on its queue, a client that a test does not read from can still close.
     async with connect(
         url,
@@ -153,14 +155,15 @@ async def joined(
     resume: str | None = None,
     source: str = "127.0.0.1",
     look: Look | None = None,
+    zone: str | None = None,
 ) -> AsyncIterator[Client]:
     """A person in the world who has had a first snapshot; an operator if `at` is given.
 
-    `source` is the address that the client connects from.
+    `source` is the address that the client connects from, `zone` the one that it wishes for.
     """
     key = None if at is None else PLACING_KEY
     hello = Hello(name=name, version=VERSION, at=at, resume=resume, operator=key, look=look)
-    async with connected(port, source) as client:
+    async with connected(port, source, zone) as client:
         await client.send(hello)
         await client.until(Snapshot)
         yield client

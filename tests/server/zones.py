@@ -28,7 +28,9 @@ IN_GATE = (17.0, 10.0, 0)
 """Places of the yard."""
 
 
-def write_town(folder: Path, *, with_actors: bool = False, **of_hall: Any) -> Path:
+def write_town(
+    folder: Path, *, with_actors: bool = False, start: str = "yard", **of_hall: Any
+) -> Path:
     """The file of a world that newcomers enter in the yard; some facts of the hall are given.
 
     With `with_actors`, they may walk from the yard to the hall.
@@ -38,7 +40,7 @@ def write_town(folder: Path, *, with_actors: bool = False, **of_hall: Any) -> Pa
     gate, door = {"zone": "yard", "portal": "gate"}, {"zone": "hall", "portal": "door"}
     town = {
         "name": "Town",
-        "start": "yard",
+        "start": start,
         "zones": [
             {"name": "hall", "scene": "hall.json", **of_hall},
             {"name": "yard", "scene": "yard.json"},

@@ -6,6 +6,8 @@ import type { Place } from "../render/picking";
 export interface AddressWish {
   /** The operator key; null for people without one. */
   operator: string | null;
+  /** The name of the zone that the link was made in, of which there may be copies. */
+  zone: string | null;
   /** A place to look at and to be asked to walk to. */
   at: Place | null;
   /** The name of somebody to be asked to follow. */
@@ -20,7 +22,7 @@ export interface AddressWish {
 
 const SECRETS = ["operator=", "pass=", "invitation="];
 
-/** Read `#operator=KEY&at=x,y,z&look=90&follow=NAME`, with `pass=` or `invitation=`; z may be left out. */
+/** Read `#operator=KEY&zone=NAME&at=x,y,z&look=90&follow=NAME`, with `pass=` or `invitation=`; z may be left out. */
 export function readAddress(hash: string): AddressWish {
   const parts = hash.replace(/^#/, "").split("&");
   const rest = parts.filter(
@@ -30,6 +32,7 @@ export function readAddress(hash: string): AddressWish {
   return {
     operator: wishes.get("operator"),
     admission: readAdmission(wishes),
+    zone: readZone(wishes.get("zone")),
     at: readPlace(wishes.get("at")),
     follow: readName(wishes.get("follow")),
     lookYaw: readDirection(wishes.get("look")),
@@ -52,21 +55,37 @@ function readPlace(text: string | null): Place | null {
   return fits ? { x, y, z } : null;
 }
 
+function readZone(text: string | null): string | null {
+  return text !== null && /^[a-z0-9-]{1,32}$/.test(text) ? text : null;
+}
+
 function readName(text: string | null): string | null {
   const name = text?.trim() ?? "";
   return name === "" ? null : name;
 }
 
-/** A link to a place, and to what one sees from there: the page's address without any secret. */
-export function linkToPlace(page: string, { x, y, z }: Place, yaw: number): string {
+/**
+ * A link to a place, and to what one sees from there: the page's address without any secret. It
+ * names the zone where that is a copy.
+ */
+export function linkToPlace(
+  page: string,
+  { x, y, z }: Place,
+  yaw: number,
+  zone: string | null = null,
+): string {
   const place = [x, y, z].map((metres) => Number(metres.toFixed(1))).join(",");
   const degrees = Math.round((Math.atan2(Math.sin(yaw), Math.cos(yaw)) * 180) / Math.PI);
-  return `${bare(page)}#at=${place}&look=${degrees}`;
+  return `${bare(page)}#${zoneOf(zone)}at=${place}&look=${degrees}`;
 }
 
-/** A link that asks whether to follow somebody. */
-export function linkToPerson(page: string, name: string): string {
-  return `${bare(page)}#follow=${encodeURIComponent(name)}`;
+/** A link that asks whether to follow somebody, who may be in a copy of a zone. */
+export function linkToPerson(page: string, name: string, zone: string | null = null): string {
+  return `${bare(page)}#${zoneOf(zone)}follow=${encodeURIComponent(name)}`;
+}
+
+function zoneOf(zone: string | null): string {
+  return zone === null ? "" : `zone=${zone}&`;
 }
 
 function bare(page: string): string {

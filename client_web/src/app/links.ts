@@ -1,5 +1,6 @@
 /** Links: the first view and the offer to go where one leads, and links to share. */
 
+import type { SceneData } from "../net/messages";
 import type { Place } from "../render/picking";
 import { words } from "../language/words";
 import { byId } from "../ui/dom";
@@ -8,6 +9,11 @@ import { ShareBar } from "../ui/share";
 import type { World } from "../world/world";
 import { type AddressWish, linkToPerson, linkToPlace } from "./address";
 import type { Picture } from "./picture";
+
+/** The name of a zone that has copies: there a link has to say which of them is meant. */
+function copyOf({ zone, copy }: SceneData): string | null {
+  return copy === undefined ? null : (zone ?? null);
+}
 
 export class Links {
   private readonly invitation = new Invitation();
@@ -31,13 +37,17 @@ export class Links {
   /** The button shares the place where the own avatar is, and what is seen from there. */
   offer(world: () => World | null): void {
     byId("share", HTMLButtonElement).addEventListener("click", () => {
-      const place = world()?.own?.pose;
-      if (place) void this.bar.show(linkToPlace(location.href, place, this.view.camera.yaw));
+      const here = world();
+      const place = here?.own?.pose;
+      if (!here || !place) return;
+      const { yaw } = this.view.camera;
+      void this.bar.show(linkToPlace(location.href, place, yaw, copyOf(here.scene)));
     });
   }
 
-  sharePerson(name: string): void {
-    void this.bar.show(linkToPerson(location.href, name));
+  sharePerson(name: string, world: World | null): void {
+    const zone = world && copyOf(world.scene);
+    void this.bar.show(linkToPerson(location.href, name, zone));
   }
 
   /** Ask whether to follow somebody who is here. */

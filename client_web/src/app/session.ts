@@ -85,7 +85,7 @@ export class Session {
     socketUrl: string,
     /** Whether the person wants little motion. */
     calm: boolean,
-    wish: Omit<AddressWish, "rest">,
+    wish: Omit<AddressWish, "rest" | "zone">,
   ) {
     this.operator = wish.operator;
     this.admission = wish.admission;
@@ -138,7 +138,7 @@ export class Session {
         linesOf: (id) => this.chat.linesOf(id),
         nameOf: (id) => this.world?.avatars.get(id)?.name ?? "",
         share: (name) => {
-          this.links.sharePerson(name);
+          this.links.sharePerson(name, this.world);
         },
         invite: (name, accept) => {
           this.links.inviteTo(name, accept);

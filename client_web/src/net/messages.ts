@@ -133,6 +133,9 @@ export interface SceneData {
   spawns?: SceneSpawn[];
   /** Heights of the storeys, metres, the lowest first. */
   storeys: number[];
+  /** The name of the zone, and its number among its copies; only a zone with copies has that. */
+  zone?: string;
+  copy?: number;
   /** The portals; only a zone of a world of several has them. */
   portals?: ScenePortal[];
   /** The address of the triangles, relative to the page; only a building that is a mesh has one. */

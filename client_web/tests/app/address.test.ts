@@ -6,6 +6,7 @@ describe("readAddress", () => {
     expect(readAddress("#operator=KEY")).toEqual({
       operator: "KEY",
       admission: null,
+      zone: null,
       at: null,
       follow: null,
       lookYaw: null,
@@ -60,6 +61,18 @@ describe("links", () => {
       at: { x: 1.2, y: -5, z: 3.5 },
       lookYaw: Math.PI / 2,
     });
+  });
+
+  it("name the copy of a zone that they were made in", () => {
+    const place = linkToPlace(page, { x: 1, y: 2, z: 0 }, 0, "hall-2");
+    expect(place).toBe("https://example.org/?v=1#zone=hall-2&at=1,2,0&look=0");
+    expect(readAddress(new URL(linkToPerson(page, "Ann", "hall")).hash)).toMatchObject({
+      zone: "hall",
+      follow: "Ann",
+    });
+    for (const text of ["", "A", "a/b", "x".repeat(33)]) {
+      expect(readAddress(`#zone=${encodeURIComponent(text)}`).zone).toBeNull();
+    }
   });
 
   it("lead to a person, whatever the name", () => {

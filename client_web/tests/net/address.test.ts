@@ -10,3 +10,9 @@ test.each([
 ])("the socket of %s is %s", (page, socket) => {
   expect(socketAddress(page)).toBe(socket);
 });
+
+test("the socket's address names the copy of a zone that somebody wishes to enter", () => {
+  expect(socketAddress("https://plaza.example/world/", "hall-2")).toBe(
+    "wss://plaza.example/world/ws?zone=hall-2",
+  );
+});

@@ -10,6 +10,7 @@ from esplanade.planning.scene.world_file import MAX_ZONES, WorldError, read_worl
 
 GATE = {"name": "gate", "points": [[8, 4], [9, 4], [9, 6], [8, 6]], "arrival": [7, 5]}
 DOOR = {"name": "door", "points": [[1, 4], [2, 4], [2, 6], [1, 6]]}
+YARDS = {"name": "yard", "scene": "yard.json", "people": 9, "copies": 8}
 EXITS = [
     {"from": {"zone": "yard", "portal": "gate"}, "to": {"zone": "hall", "portal": "door"}},
     {"from": {"zone": "hall", "portal": "door"}, "to": {"zone": "yard", "portal": "gate"}},
@@ -56,6 +57,21 @@ def test_the_zone_to_enter_can_be_another_than_the_first(tmp_path: Path) -> None
     assert read_world(write(tmp_path, start="hall")).file.start_zone == "hall"
 
 
+def test_copies_are_zones_with_the_scene_and_the_exits_of_the_first(tmp_path: Path) -> None:
+    zones = [
+        {"name": "yard", "scene": "yard.json"},
+        {"name": "hall", "scene": "hall.json", "people": 40, "copies": 3},
+    ]
+    world = read_world(write(tmp_path, zones=zones))
+    assert [zone.name for zone in world.file.entries] == ["yard", "hall", "hall-2", "hall-3"]
+    assert {zone.people for zone in world.file.entries[1:]} == {40}
+    assert world.scenes["hall-3"] == world.scenes["hall"]
+    assert world.paths["hall-3"] == world.paths["hall"]
+    assert world.exits("hall-2") == world.exits("hall")
+    assert world.arrivals("hall-2") == world.arrivals("hall") != []
+    assert world.exits("yard")["gate"][0] == "hall"
+
+
 def exits(**changes: Any) -> list[dict[str, Any]]:
     """The exits, the first with another `from` or `to`."""
     first: dict[str, Any] = {
@@ -93,6 +109,22 @@ def exits(**changes: Any) -> list[dict[str, Any]]:
         (
             {"zones": [{"name": "yard", "scene": "yard.json"}] * 2, "exits": []},
             "zones.1.name: the name 'yard' is taken",
+        ),
+        (
+            {"zones": [{"name": "yard", "scene": "yard.json", "copies": 2}], "exits": []},
+            "zones.0.copies: zone 'yard' needs people: the most in each copy",
+        ),
+        (
+            {"zones": [YARDS, {"name": "yard-2", "scene": "hall.json"}], "exits": []},
+            "zones.0.copies: a copy of 'yard' has the name 'yard-2', which is that of another zone",
+        ),
+        (
+            {"zones": [YARDS | {"name": "y" * 31}], "exits": []},
+            f"zones.0.copies: '{'y' * 31}-2', the name of a copy, has more than 32 characters",
+        ),
+        (
+            {"zones": [YARDS | {"name": name} for name in "abc"], "exits": []},
+            f"zones: 24 with all copies, there may be {MAX_ZONES}",
         ),
         (
             {"zones": [{"name": "The Yard", "scene": "yard.json"}], "exits": []},

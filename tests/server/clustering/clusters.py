@@ -275,7 +275,7 @@ class Cluster:
         for gateway in gateways:
             gateway.wait_for("open")
         end = time.monotonic() + PATIENCE_S
-        while not all(self._has_owner(zone) for zone in ZONES):
+        while not all(self.runs(zone) for zone in ZONES):
             assert time.monotonic() < end, "a zone has no owner"
             time.sleep(0.05)
 
@@ -319,11 +319,11 @@ class Cluster:
     async def taken_over(self, zone: str, epoch: int) -> Process:
         """Wait until a zone has another owner than that of an epoch, which runs it."""
         async with asyncio.timeout(PATIENCE_S):
-            while self.owner(zone)[1] <= epoch or not self._has_owner(zone):  # noqa: ASYNC110
+            while self.owner(zone)[1] <= epoch or not self.runs(zone):  # noqa: ASYNC110
                 await asyncio.sleep(0.05)
         return self.owning(zone)
 
-    def _has_owner(self, zone: str) -> bool:
+    def runs(self, zone: str) -> bool:
         """Whether a host has a zone, and has begun to run it."""
         host, epoch = self.owner(zone)
         return any(
