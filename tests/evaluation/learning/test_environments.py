@@ -1,5 +1,6 @@
 """Gymnasium's and PettingZoo's environments: their own checkers, seeds, trips and their ends."""
 
+import json
 from pathlib import Path
 from typing import Any
 
@@ -50,6 +51,13 @@ def lanes(folder: Path, *tracks: Track) -> Path:
     """Tracks in a recording that goes on for a minute, as somebody walks far away."""
     far = walk("9", 0.0, (-50.0, 50.0), (-50.0, 122.0))
     return write_csv(folder, Crowd("lanes", (*tracks, far)))
+
+
+def walled(recording: Path, *walls: tuple[float, float, float, float]) -> Path:
+    """The recording, with walls from x, y to x, y beside it."""
+    told = {"segments": [list(wall) for wall in walls]}
+    recording.with_suffix(".walls.json").write_text(json.dumps(told))
+    return recording
 
 
 @PEOPLE
@@ -106,6 +114,20 @@ def test_a_contact_ends_a_trip_and_costs(tmp_path: Path) -> None:
 def test_a_robot_that_stands_is_late(tmp_path: Path) -> None:
     east, west = walk("1", 0.0, (0.0, 0.0), (12.0, 0.0)), walk("2", 0.0, (12.0, 9.0), (0.0, 9.0))
     assert walked(TripEnv(lanes(tmp_path, east, west)), np.zeros(2), trip=0)[1:] == ("late", 600)
+
+
+def test_a_wall_ends_a_trip(tmp_path: Path) -> None:
+    east = walk("1", 0.0, (0.0, 0.0), (9.0, 0.0))
+    stands = walk("2", 0.0, (-2.0, -2.0), (-2.0, -1.0), speed_mps=0.02)
+    recording = write_csv(tmp_path, Crowd("lane", (east, stands)))
+    env = TripEnv(walled(recording, (-2.0, 0.7, 11.0, 0.7)))
+    assert walked(env, trip=0)[1] == "reached"
+    total, outcome, ticks = min(
+        (walked(env, (0.5, side), trip=0) for side in (-0.8, 0.8)), key=lambda trip: trip[2]
+    )
+    assert outcome == "wall"
+    assert ticks < 20
+    assert total < 0.0
 
 
 def test_several_environments_walk_as_one(plaza: Path) -> None:
