@@ -180,7 +180,9 @@ def decode_client(frame: bytes) -> ClientMessage:
         return model.model_validate(fields)  # type: ignore[return-value]
     except ValidationError as error:
         raise ProtocolError(
-            ErrorCode.INVALID, f"{model.__name__}: {_first_fault(error)}", CloseCode.INVALID
+            ErrorCode.INVALID,
+            f"{model.code.name.lower()}: {_first_fault(error)}",
+            CloseCode.INVALID,
         ) from None
 
 
@@ -214,10 +216,24 @@ def _unpack(frame: bytes) -> list[Any]:
     try:
         parts = msgpack.unpackb(frame, strict_map_key=True)
     except (ValueError, TypeError, OverflowError) as error:  # among them msgpack's own, all bounded
-        raise _malformed(f"not msgpack: {type(error).__name__}") from None
+        raise _malformed(f"not msgpack: {_why_not(error)}") from None
     if not isinstance(parts, list) or not parts:
         raise _malformed("a frame is a msgpack array that begins with a message code")
     return parts
+
+
+def _why_not(error: Exception) -> str:
+    """The words for why bytes are no msgpack."""
+    kinds = (
+        (msgpack.ExtraData, "more bytes follow where it ends"),
+        (msgpack.StackError, "arrays and maps are nested too deep"),
+        (msgpack.FormatError, "a byte begins nothing that there is"),
+        (UnicodeDecodeError, "a text is not UTF-8"),
+    )
+    for kind, words in kinds:
+        if isinstance(error, kind):
+            return words
+    return "it ends too early" if "incomplete" in str(error) else "it cannot be read"
 
 
 def _check_length(block: bytes | memoryview) -> None:

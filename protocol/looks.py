@@ -2,7 +2,7 @@
 
 from typing import Annotated, Any, Final, NamedTuple
 
-from pydantic import PlainSerializer, PlainValidator
+from pydantic import PlainSerializer, PlainValidator, WithJsonSchema
 
 
 class Look(NamedTuple):
@@ -76,7 +76,17 @@ def _range_of(name: str) -> str:
 
 
 _AS_LIST: Final = PlainSerializer(parts_of, return_type=list[int])
-ChosenLook = Annotated[Look, PlainValidator(checked_look), _AS_LIST]
+_CHOSEN_SCHEMA: Final[dict[str, Any]] = {
+    "type": "array",
+    "items": [
+        {"title": name, "type": "integer", "minimum": 0, "maximum": getattr(MOST, name)}
+        for name in CHOSEN
+    ],
+    "minItems": len(CHOSEN),
+    "maxItems": len(CHOSEN),
+}
+_KNOWN_SCHEMA: Final[dict[str, Any]] = {"type": "array", "items": {"type": "integer"}}
+ChosenLook = Annotated[Look, PlainValidator(checked_look), _AS_LIST, WithJsonSchema(_CHOSEN_SCHEMA)]
 """A look as clients send it."""
-KnownLook = Annotated[Look, PlainValidator(known_look), _AS_LIST]
+KnownLook = Annotated[Look, PlainValidator(known_look), _AS_LIST, WithJsonSchema(_KNOWN_SCHEMA)]
 """A look as other programs of the server, and servers, tell it."""

@@ -13,6 +13,7 @@ from esplanade.protocol.codes import (
     MAX_CHAT_CHARS,
     MAX_DOOR_CHARS,
     MAX_LINE_NUMBER,
+    MAX_NAME_CHARS,
     MAX_SECRET_CHARS,
     MAX_TOKEN_CHARS,
     ByeCode,
@@ -39,7 +40,11 @@ Sequence = Annotated[int, Field(ge=0, le=0xFFFF_FFFF)]
 LineNumber = Annotated[int, Field(ge=0, le=MAX_LINE_NUMBER)]
 Arguments = dict[str, Any]
 """Numbers and texts for programs, from which they make sentences in any language."""
-Name = Annotated[str, AfterValidator(plain_name)]
+Name = Annotated[
+    str,
+    AfterValidator(plain_name),
+    Field(description=f"1 to {MAX_NAME_CHARS} visible characters on one line."),
+]
 Line = Annotated[
     str,
     StringConstraints(strip_whitespace=True, min_length=1, max_length=MAX_CHAT_CHARS),

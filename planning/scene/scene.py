@@ -212,6 +212,8 @@ class Spawn(_Spot):
     """Avatars come into the world anywhere free within `radius_m` of the position."""
 
     radius_m: Annotated[float, Field(ge=0.0, le=50.0)] = 1.0
+    view: Point | None = None
+    """The place that a page shows to those who come in here first; without it, the page chooses."""
 
 
 class Place(_Spot):
@@ -285,13 +287,14 @@ class Scene(_Part):
         x0, y0, x1, y1 = self.bounds
         if not (x0 < x1 and y0 < y1):
             return
-        for group, points in (
-            ("spawns", [spawn.position for spawn in self.spawns]),
-            ("places", [place.position for place in self.places]),
+        for group, spots in (
+            ("spawns", [(each.position, each.view or each.position) for each in self.spawns]),
+            ("places", [(each.position,) for each in self.places]),
         ):
-            for i, (x, y) in enumerate(points):
-                if not (x0 <= x <= x1 and y0 <= y <= y1):
-                    yield f"{group}.{i}: ({x:g}, {y:g}) lies outside the bounds"
+            for i, points in enumerate(spots):
+                for x, y in dict.fromkeys(points):
+                    if not (x0 <= x <= x1 and y0 <= y <= y1):
+                        yield f"{group}.{i}: ({x:g}, {y:g}) lies outside the bounds"
         for i, portal in enumerate(self.portals):
             for x, y in (*portal.points, portal.arrival_place[:2]):
                 if not (x0 <= x <= x1 and y0 <= y <= y1):

@@ -1,6 +1,7 @@
 """The examples of the document run as they stand, but for the address."""
 
 import asyncio
+import dataclasses
 import re
 import sys
 from pathlib import Path
@@ -16,6 +17,23 @@ from tests.patience import PATIENCE_S
 ROOT = Path(__file__).resolve().parents[2]
 TEXT = (ROOT / "docs" / "bots.md").read_text()
 EXAMPLES = re.findall(r"^```python\n(.*?)^```", TEXT, re.MULTILINE | re.DOTALL)
+
+
+def rows_below(heading: str) -> str:
+    """The table whose first line begins so."""
+    return TEXT.split(f"| {heading} |", 1)[1].split("\n\n", 1)[0]
+
+
+def test_every_member_stands_in_the_tables() -> None:
+    hidden = {"join", "close"}  # `connect` calls them
+    members = {name for name in dir(bots.Bot) if not name.startswith("_")} - hidden
+    told = set(re.findall(r"[`.]([a-z_]+)[`(]", rows_below("member of `Bot`")))
+    assert members <= told
+    assert {name for name in dir(bots.Scenario) if not name.startswith("_")} <= {
+        *re.findall(r"[`.]([a-z_]+)[`(]", rows_below("member of `Scenario`"))
+    }
+    fields = {field.name for field in dataclasses.fields(bots.Avatar)}
+    assert fields == set(re.findall(r"`([a-z_]+)`", rows_below("field of `Avatar`")))
 
 
 async def start(example: str, url: str) -> asyncio.subprocess.Process:

@@ -197,14 +197,18 @@ def test_bombs(frame: bytes) -> None:
 @pytest.mark.parametrize(
     ("frame", "code", "close", "text"),
     [
-        (b"\xc1", ErrorCode.MALFORMED, CloseCode.MALFORMED, "not msgpack"),
+        (b"\xc1", ErrorCode.MALFORMED, CloseCode.MALFORMED, "not msgpack: a byte begins nothing"),
+        (b"\x92\x05", ErrorCode.MALFORMED, CloseCode.MALFORMED, "not msgpack: it ends too early"),
+        (b"\x90\x90", ErrorCode.MALFORMED, CloseCode.MALFORMED, "more bytes follow"),
+        (b"\x91" * 2000, ErrorCode.MALFORMED, CloseCode.MALFORMED, "nested too deep"),
+        (b"\x91\xa1\xff", ErrorCode.MALFORMED, CloseCode.MALFORMED, "a text is not UTF-8"),
         (b"\x01", ErrorCode.MALFORMED, CloseCode.MALFORMED, "begins with a message code"),
         (b"\x90", ErrorCode.MALFORMED, CloseCode.MALFORMED, "begins with a message code"),
         (b"\x91\x05", ErrorCode.MALFORMED, CloseCode.MALFORMED, "[code, map of fields]"),
         (b"\x92\x05\x01", ErrorCode.MALFORMED, CloseCode.MALFORMED, "[code, map of fields]"),
         (b"\x92\xc3\x80", ErrorCode.MALFORMED, CloseCode.MALFORMED, "code is an integer"),
         (b"\x92\x63\x80", ErrorCode.INVALID, CloseCode.INVALID, "unknown message code 99; known"),
-        (b"\x92\x05\x80", ErrorCode.INVALID, CloseCode.INVALID, "Ping: nonce: Field required"),
+        (b"\x92\x05\x80", ErrorCode.INVALID, CloseCode.INVALID, "ping: nonce: Field required"),
     ],
 )
 def test_faults_are_named(frame: bytes, code: ErrorCode, close: CloseCode, text: str) -> None:

@@ -10,7 +10,7 @@ from esplanade.protocol import decode_client, decode_server, encode, messages
 from esplanade.protocol.messages import FromClient, FromServer
 
 GOLDEN: list[dict[str, Any]] = json.loads(
-    (Path(__file__).parent / "golden.json").read_text(encoding="utf-8")
+    (Path(__file__).parents[2] / "protocol" / "golden.json").read_text(encoding="utf-8")
 )
 
 

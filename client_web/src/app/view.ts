@@ -3,7 +3,7 @@
 import { Cutaway } from "../render/cutaway";
 import { FollowCamera } from "../render/follow";
 import { Figures } from "../render/figures";
-import { firstYaw } from "../render/firstview";
+import { firstYaw, namedYaw } from "../render/firstview";
 import { drawsInSoftware } from "../render/hardware";
 import { SkeletonOverlay } from "../render/skeletonoverlay";
 import { Labels } from "../render/labels";
@@ -70,10 +70,15 @@ export class View implements Picture {
     this.marks.walkTarget(null);
   }
 
-  lookAround({ own, avatars }: World): void {
+  lookAround({ own, avatars, scene }: World): void {
     const { town } = this;
     if (!own || !town) return;
     const here = own.pose;
+    const named = namedYaw(here, scene.spawns ?? []);
+    if (named !== null) {
+      this.camera.yaw = named;
+      return;
+    }
     const others = [...avatars.values()]
       .filter(({ own: isOwn, pose }) => !isOwn && Math.abs(pose.z - here.z) < STOREYS_APART_M)
       .map(({ pose }) => pose);

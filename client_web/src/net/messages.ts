@@ -103,6 +103,14 @@ export interface ScenePlace {
   z_m: number;
 }
 
+/** An area in which people come in; `view` is the place that is shown to them first. */
+export interface SceneSpawn {
+  position: Point;
+  z_m: number;
+  radius_m: number;
+  view?: Point | null;
+}
+
 /** An area of a floor from which one goes to another zone. */
 export interface ScenePortal {
   name: string;
@@ -121,6 +129,8 @@ export interface SceneData {
   stairs: SceneStairs[];
   doors: SceneDoor[];
   places: ScenePlace[];
+  /** Servers of before did not send them all with a view. */
+  spawns?: SceneSpawn[];
   /** Heights of the storeys, metres, the lowest first. */
   storeys: number[];
   /** The portals; only a zone of a world of several has them. */

@@ -1,10 +1,15 @@
 /** The direction of the first view: to people, and over open ground rather than at a wall. */
 
+import type { SceneSpawn } from "../net/messages";
+import { STOREYS_APART_M } from "../world/heights";
+
 const DIRECTIONS = 24;
 /** Ground that is open further than this is no better. */
 const OPEN_M = 25;
 /** Somebody so far away counts half as much as somebody right here. */
 const NEAR_M = 8;
+/** Newcomers to a full spawn stand up to so far outside of it. */
+const BESIDE_M = 2;
 
 interface Spot {
   x: number;
@@ -29,6 +34,21 @@ export function firstYaw(
     if (worth > best.worth) best = { yaw, worth };
   }
   return best.yaw;
+}
+
+/**
+ * The direction that the scene names for those who came in where somebody stands, radians from +x;
+ * null where it names none. A newcomer stands within a spawn's radius, or next to it if it is full.
+ */
+export function namedYaw(own: Spot & { z: number }, spawns: readonly SceneSpawn[]): number | null {
+  const here = spawns.find(
+    ({ position: [x, y], z_m, radius_m }) =>
+      Math.abs(z_m - own.z) < STOREYS_APART_M &&
+      Math.hypot(x - own.x, y - own.y) <= radius_m + BESIDE_M,
+  );
+  if (!here?.view) return null;
+  const [x, y] = here.view;
+  return Math.atan2(y - own.y, x - own.x);
 }
 
 /** The worth of somebody in a view: most in its middle and near by. */

@@ -16,6 +16,13 @@ def read(**parts) -> Scene:
     return Scene.model_validate_json(json.dumps({"bounds": BOUNDS, **parts}))
 
 
+def test_a_spawn_names_what_is_seen_first_there() -> None:
+    scene = read(spawns=[{"position": [10.0, 5.0], "view": [12.0, 5.0]}, {"position": [1.0, 5.0]}])
+    assert [spawn.view for spawn in scene.spawns] == [(12.0, 5.0), None]
+    with pytest.raises(ValidationError, match=r"spawns\.0: \(25, 5\) lies outside the bounds"):
+        read(spawns=[{"position": [10.0, 5.0], "view": [25.0, 5.0]}])
+
+
 def test_a_whole_scene_is_read() -> None:
     scene = read(
         name="square",

@@ -244,7 +244,7 @@ async def test_a_name_that_is_none_is_refused_with_the_reason(serving: Serving, 
         await client.connection.send(frame)
         error = await client.until(Error)
         assert error.error is ErrorCode.INVALID
-        assert error.text.startswith("Hello: name: ")
+        assert error.text.startswith("hello: name: ")
 
 
 def packed(text: str) -> bytes:
