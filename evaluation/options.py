@@ -1,6 +1,5 @@
 """The options of `esplanade evaluate`, without anything that evaluates."""
 
-import json
 from argparse import ArgumentTypeError, Namespace
 from pathlib import Path
 from typing import Any, Final
@@ -18,7 +17,7 @@ from esplanade.commandline.readers import (
 )
 from esplanade.commandline.recording_settings import add_reading, check_reading
 from esplanade.commandline.trajectory_files import check_suffix
-from esplanade.evaluation.policy_names import address_of, is_outside, label_of
+from esplanade.evaluation.policy_names import address_of, is_outside, label_of, option_value
 from esplanade.evaluation.setting_names import NAMES
 
 POLICIES: Final = {
@@ -157,7 +156,7 @@ def parser() -> Parser:
         action="store_true",
         help="exit with 1 if an episode failed; refuse recordings with glitches of tracking",
     )
-    _add_studies(made.add_argument_group("settings of our actor"))
+    _add_studies(made.add_argument_group("studies of our actor, or of a policy of your own"))
     forecasts = made.add_argument_group("prediction")
     forecasts.add_argument(
         "--prediction", action="store_true", help="measure predictions instead of episodes"
@@ -236,11 +235,11 @@ def _add_studies(studies: Any) -> None:
     studies.add_argument(
         "--vary",
         metavar="NAME=V1,V2,..",
-        type=_of_setting,
         action="append",
         default=[],
-        help="a setting and its values; may be given several times: --sensitivity takes one at a "
-        "time [default: all that make the actor's temper], --tune all combinations",
+        help="a setting and its values, or a --policy-option of your own policy; may be given "
+        "several times: --sensitivity takes one at a time [default: all that make the actor's "
+        "temper], --tune all combinations",
     )
     studies.add_argument(
         "--candidates",
@@ -288,12 +287,34 @@ def _check_studies(options: Namespace) -> None:
         raise UsageError("--place is for --sensitivity and --tune")
     if options.candidates is not None and not options.tune:
         raise UsageError("--candidates is for --tune")
+    if studies:
+        _check_subject(options)
     if studies and options.score_cache is None:
         raise UsageError("a study takes long: keep its scores with --score-cache FILE")
     if options.tune and not (options.vary or options.candidates):
         raise UsageError("--tune needs candidates: --vary NAME=V1,V2,.. or --candidates FILE")
     if options.tune and not all("=" in text for text in options.vary):
         raise UsageError("--vary: --tune needs values, as NAME=V1,V2,..")
+
+
+def _check_subject(options: Namespace) -> None:
+    """Whether a study is of one policy that has the settings."""
+    name, *others = dict.fromkeys(options.policy)
+    if others:
+        raise UsageError("--policy: a study is of one policy")
+    if is_outside(name):
+        if options.set:
+            raise UsageError("--set is for our own actor; yours has --policy-option NAME=VALUE")
+        if options.sensitivity and not options.vary:
+            raise UsageError("--sensitivity of a policy of your own needs --vary NAME=V1,V2,..")
+        return
+    if name != "esplanade":
+        raise UsageError(f"--policy: {name} has no settings that a study could vary")
+    for text in options.vary:
+        try:
+            _of_setting(text)
+        except ArgumentTypeError as error:
+            raise UsageError(f"--vary: {error}") from None
 
 
 def _check_policies(options: Namespace) -> None:
@@ -333,9 +354,9 @@ def _policy_option(text: str) -> tuple[str, Any]:
     if not equals or not all(part.isidentifier() for part in name.split(".")):
         raise ArgumentTypeError(f"{text!r} is not NAME=VALUE or CLASS.NAME=VALUE")
     try:
-        return name, json.loads(value)
-    except ValueError:
-        return name, value
+        return name, option_value(value)
+    except ValueError as error:
+        raise ArgumentTypeError(str(error)) from None
 
 
 def _change(text: str) -> str:

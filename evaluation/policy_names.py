@@ -3,6 +3,7 @@
 import hashlib
 import importlib
 import importlib.util
+import json
 import sys
 from collections.abc import Callable, Iterable
 from importlib.machinery import SourceFileLoader
@@ -62,6 +63,36 @@ def own_options(name: str, options: Iterable[tuple[str, Any]]) -> dict[str, Any]
         if owner in ("", label_of(name)):
             found[keyword] = value
     return found
+
+
+def option_value(text: str) -> Any:
+    """The value of an option: JSON, or else the text itself. A list becomes a tuple.
+
+    Raises
+    ------
+    ValueError
+        It is a JSON object, or has one inside.
+    """
+    try:
+        return frozen(json.loads(text))
+    except json.JSONDecodeError:
+        return text
+
+
+def frozen(value: Any) -> Any:
+    """A value of JSON with tuples instead of lists, so that options can be compared and kept.
+
+    Raises
+    ------
+    ValueError
+        It is an object, or has one inside.
+    """
+    match value:
+        case dict():
+            raise ValueError(f"{value} is an object; give its parts as options of their own")
+        case list():
+            return tuple(map(frozen, value))
+    return value
 
 
 def digest_of_policy(name: str) -> str:

@@ -34,8 +34,10 @@ def show_faults(console: Console, results: Sequence[TrialResult], names: Mapping
         failed = [score for score in result.scores if score.fault]
         if failed:
             trial = result.trial
+            given = ", ".join(f"{name}={value}" for name, value in trial.settings)
+            policy = f"{trial.label} ({given})" if given else trial.label
             console.print(
-                f"{trial.label} failed in {len(failed)} of {len(result.scores)} episodes of "
+                f"{policy} failed in {len(failed)} of {len(result.scores)} episodes of "
                 f"{names[trial.source]}; in episode {failed[0].number} {failed[0].fault}",
                 markup=False,
                 highlight=False,

@@ -9,9 +9,9 @@ import numpy as np
 from esplanade.actors import ActorParameters
 from esplanade.evaluation.measures import MEASURES
 from esplanade.evaluation.rules import Rules
-from esplanade.evaluation.settings import DEFAULTS, SettingError, check
+from esplanade.evaluation.settings import SettingError
+from esplanade.evaluation.studies.subjects import OUR_ACTOR, Subject
 from esplanade.evaluation.studies.variants import Tables, Variant
-from esplanade.planning import RuleModel
 from esplanade.stats import interval_of, means_of, resampled_means
 
 BODY_PARAMETERS: Final = frozenset(
@@ -35,7 +35,6 @@ BEHAVIOUR_PARAMETERS: Final = tuple(
     for name in ActorParameters.model_fields
     if name not in BODY_PARAMETERS | MULTI_ACTOR_PARAMETERS
 )
-RULES_PREFIX: Final = "rules."
 VALUES_EACH_SIDE: Final = 2
 FACTOR: Final = 2.0
 """By default a setting takes `VALUES_EACH_SIDE` values below and above its own, each `FACTOR` times
@@ -65,7 +64,9 @@ class Curve:
 
 
 def ranges(
-    choices: Mapping[str, tuple[Any, ...] | None], base: Mapping[str, Any]
+    choices: Mapping[str, tuple[Any, ...] | None],
+    base: Mapping[str, Any],
+    subject: Subject = OUR_ACTOR,
 ) -> dict[str, tuple[Any, ...]]:
     """The values of each setting in ascending order, with that of the baseline among them.
 
@@ -74,12 +75,14 @@ def ranges(
     SettingError
         No values are given for a setting that has no value to scale and no upper limit.
     """
-    return {name: _values(name, given, base) for name, given in choices.items()}
+    return {name: _values(name, given, base, subject) for name, given in choices.items()}
 
 
-def variant_of(rules: Rules, base: Mapping[str, Any], name: str, value: Any) -> Variant:
+def variant_of(
+    rules: Rules, base: Mapping[str, Any], name: str, value: Any, subject: Subject = OUR_ACTOR
+) -> Variant:
     """The variant that has one setting at one value."""
-    return Variant.of(rules, check({**base, name: value}))
+    return subject.variant(rules, subject.check({**base, name: value}))
 
 
 def curves(
@@ -88,16 +91,17 @@ def curves(
     rules: Rules,
     tables: Mapping[Variant, Tables],
     seed: int,
+    subject: Subject = OUR_ACTOR,
 ) -> list[Curve]:
     """Collect the results of every value of every setting."""
     found = []
     for name, taken in values.items():
-        baseline = _baseline(name, base)
-        unchanged = list(tables[variant_of(rules, base, name, baseline)].values())
+        baseline = subject.baseline(name, base)
+        unchanged = list(tables[variant_of(rules, base, name, baseline, subject)].values())
         reference = resampled_means(unchanged, seed, even=True)
         points = []
         for value in taken:
-            measured = list(tables[variant_of(rules, base, name, value)].values())
+            measured = list(tables[variant_of(rules, base, name, value, subject)].values())
             resamples = resampled_means(measured, seed, even=True)
             intervals = interval_of(resamples, measured)
             differences = interval_of(resamples - reference, measured)
@@ -110,7 +114,7 @@ def curves(
                     tuple(found.low > 0.0 or found.high < 0.0 for found in differences),
                 )
             )
-        found.append(Curve(name, _schema(name).get("unit", ""), baseline, tuple(points)))
+        found.append(Curve(name, subject.schema(name).get("unit", ""), baseline, tuple(points)))
     return found
 
 
@@ -134,12 +138,19 @@ def figures(found: Sequence[Curve]) -> list[dict[str, Any]]:
     ]
 
 
-def _values(name: str, given: tuple[Any, ...] | None, base: Mapping[str, Any]) -> tuple[Any, ...]:
-    baseline = _baseline(name, base)
+def _values(
+    name: str, given: tuple[Any, ...] | None, base: Mapping[str, Any], subject: Subject
+) -> tuple[Any, ...]:
+    baseline = subject.baseline(name, base)
     if given is not None:
-        return tuple(sorted({*given, baseline}))
-    limits = _schema(name)
+        try:
+            return tuple(sorted({*given, baseline}))
+        except TypeError:
+            raise SettingError(f"{name} is {baseline}: its values are of several types") from None
+    limits = subject.schema(name)
     least, most = limits.get("minimum", 0.0), limits.get("maximum", np.inf)
+    if not isinstance(baseline, int | float):
+        raise SettingError(f"{name} is {baseline}: give its values as {name}=V1,V2,..")
     if baseline == 0 and most < np.inf and not isinstance(baseline, bool):
         spread = [0.0, *(most / FACTOR**step for step in range(2 * VALUES_EACH_SIDE, 0, -1))]
     elif 0.0 < baseline < np.inf and not isinstance(baseline, bool):
@@ -149,16 +160,3 @@ def _values(name: str, given: tuple[Any, ...] | None, base: Mapping[str, Any]) -
         raise SettingError(f"{name} is {baseline}: give its values as {name}=V1,V2,..")
     whole = isinstance(baseline, int)
     return tuple(sorted({round(value) if whole else value for value in spread}))
-
-
-def _baseline(name: str, base: Mapping[str, Any]) -> Any:
-    return base.get(name, DEFAULTS[name])
-
-
-def _schema(name: str) -> dict[str, Any]:
-    """The JSON schema of a parameter or a rule; it is empty for a field of another model."""
-    of_rules = name.startswith(RULES_PREFIX)
-    kind = RuleModel if of_rules else ActorParameters
-    known = kind.model_json_schema()["properties"]
-    found: dict[str, Any] = known.get(name.removeprefix(RULES_PREFIX) if of_rules else name, {})
-    return found

@@ -10,7 +10,8 @@ from typing import Any, Final
 import numpy as np
 
 from esplanade.evaluation.measures import MEASURES, Floats, named
-from esplanade.evaluation.settings import SettingError, check
+from esplanade.evaluation.settings import SettingError
+from esplanade.evaluation.studies.subjects import OUR_ACTOR, Subject
 from esplanade.evaluation.studies.variants import Tables, Variant
 from esplanade.files.content import ContentError
 from esplanade.files.text import read_text
@@ -53,16 +54,19 @@ class Tuning:
 
 
 def candidates(
-    grid: Mapping[str, Sequence[Any]], listed: Sequence[Mapping[str, Any]], base: Mapping[str, Any]
+    grid: Mapping[str, Sequence[Any]],
+    listed: Sequence[Mapping[str, Any]],
+    base: Mapping[str, Any],
+    subject: Subject = OUR_ACTOR,
 ) -> list[dict[str, Any]]:
     """The settings to compare: the baseline, all combinations of a grid, and those listed."""
     combined = [
         dict(zip(grid, values, strict=True)) for values in itertools.product(*grid.values()) if grid
     ]
-    return [check({**base, **changes}) for changes in [{}, *combined, *listed]]
+    return [subject.check({**base, **changes}) for changes in [{}, *combined, *listed]]
 
 
-def read_candidates(path: Path) -> list[dict[str, Any]]:
+def read_candidates(path: Path, subject: Subject = OUR_ACTOR) -> list[dict[str, Any]]:
     """Read candidates from a file that has a JSON object of settings in every line.
 
     Raises
@@ -82,7 +86,7 @@ def read_candidates(path: Path) -> list[dict[str, Any]]:
             settings = json.loads(line)
             if not isinstance(settings, dict):
                 raise SettingError('a line must be one object of settings, {"NAME": VALUE, ..}')
-            found.append(check(settings))
+            found.append(subject.check(settings))
         except ValueError as error:
             raise SettingError(f"{path}:{number}: {error}") from None
     return found

@@ -1,4 +1,4 @@
-"""Variants of our actor, and the trials that compare them on the same episodes."""
+"""Variants of a policy, and the trials that compare them on the same episodes."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -18,14 +18,15 @@ LIMIT: Final = "max_acceleration_mps2"
 
 @dataclass(frozen=True)
 class Variant:
-    """Our actor with some settings changed, under some rules."""
+    """A policy, our actor or one from outside, with some settings changed, under some rules."""
 
     rules: Rules
     settings: tuple[tuple[str, Any], ...] = ()
+    policy: str = OURS
 
     @classmethod
     def of(cls, rules: Rules, settings: Mapping[str, Any]) -> "Variant":
-        """The variant with some settings, without those that have their default value.
+        """The variant of our actor with some settings, without those that have their default value.
 
         The limit of acceleration becomes a rule. So variants are equal if they behave the same.
         """
@@ -54,7 +55,13 @@ def trials_of(
         trial
         for variant in dict.fromkeys(variants)
         for trial in plan_trials(
-            sources, [OURS], variant.rules, count, seed, dict(variant.settings)
+            sources,
+            [variant.policy],
+            variant.rules,
+            count,
+            seed,
+            dict(variant.settings),
+            variant.settings,
         )
     ]
 
@@ -65,7 +72,7 @@ def tables_of(
     """The measures of every variant at every place, whose recordings count as one."""
     found: dict[Variant, dict[str, list[TrialResult]]] = {}
     for result in results:
-        variant = Variant(result.trial.rules, result.trial.settings)
+        variant = Variant(result.trial.rules, result.trial.settings, result.trial.policy)
         at = found.setdefault(variant, {})
         at.setdefault(places[result.trial.source], []).append(result)
     return {

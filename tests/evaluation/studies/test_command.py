@@ -21,6 +21,14 @@ def run(*arguments: object) -> int:
     return main(["evaluate", "--processes=1", "--episodes=2", *map(str, arguments)])
 
 
+def ended(*arguments: object) -> object:
+    """The exit code, also where the parser of options ends the command."""
+    try:
+        return run(*arguments)
+    except SystemExit as end:
+        return end.code
+
+
 @pytest.mark.skipif(find_spec("matplotlib") is None, reason="matplotlib is absent")
 def test_one_setting_after_the_other_is_varied(
     tmp_path: Path, crowds: list[Path], capsys: pytest.CaptureFixture[str]
@@ -84,9 +92,111 @@ def test_recordings_of_one_place_count_as_one(
             assert low <= row["time_ratio"] <= high
 
 
+PACED = """
+import numpy as np
+
+class Paced:
+    def __init__(self, pace=1.3, side="left", bends=()):
+        if pace < 0:
+            raise ValueError("it would walk backwards")
+        self.pace, self.side = pace, side
+
+    def velocity(self, observation):
+        if self.side == "lost":
+            raise LookupError("no map")
+        ahead = observation.waypoint - observation.position
+        return self.pace * ahead / np.hypot(*ahead)
+"""
+
+
+@pytest.fixture
+def paced(tmp_path: Path) -> str:
+    """A policy of one's own, the faster the better, which fails where its side is `lost`."""
+    (tmp_path / "paced.py").write_text(PACED)
+    return f"{tmp_path / 'paced.py'}:Paced"
+
+
+def test_a_policy_of_ones_own_is_tuned(
+    tmp_path: Path, crowds: list[Path], paced: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    listed, target = tmp_path / "candidates.jsonl", tmp_path / "all.json"
+    listed.write_text('{"side": "lost", "bends": [1, 2]}\n')
+    study = [*crowds, "--tune", "--policy", paced, "--policy-option=pace=0.9", "--vary=pace=1.3"]
+    study += ["--candidates", listed, "--score-cache", tmp_path / "done.jsonl", "--json", target]
+    assert run(*study) == exit_codes.OK
+    shown = capsys.readouterr().out
+    assert "side=lost) failed in 2 of 2 episodes of plaza; in episode 0 at 0.0 s: no map" in shown
+    found = json.loads(target.read_text())
+    assert found["settings"]["policy"] == paced
+    assert found["settings"]["pace"] == 0.9
+    rows = {json.dumps(row["settings"]): row for row in found["candidates"]}
+    slow, fast, lost = '{"pace": 0.9}', '{"pace": 1.3}', '{"bends": [1, 2], "pace": 0.9, "side": '
+    assert rows[fast]["time_ratio"] < rows[slow]["time_ratio"]
+    (missed,) = (row["missed_percent"] for text, row in rows.items() if text.startswith(lost))
+    assert missed == 100.0
+
+
+def test_options_of_a_policy_of_ones_own_are_varied(
+    tmp_path: Path, crowds: list[Path], paced: str
+) -> None:
+    target = tmp_path / "all.json"
+    study = [*crowds, "--sensitivity", "--policy", paced, "--score-cache", tmp_path / "done.jsonl"]
+    study += ["--policy-option=pace=1.2", "--policy-option=side=left"]
+    study += ["--vary=pace=0.8,1.6", "--vary=side=left,right", "--json", target]
+    assert run(*study) == exit_codes.OK
+    points = json.loads(target.read_text())["points"]
+    assert [(row["setting"], row["value"]) for row in points] == [
+        ("pace", 0.8), ("pace", 1.2), ("pace", 1.6), ("side", "left"), ("side", "right"),
+    ]  # fmt: skip
+    times = [row["time_ratio"]["mean"] for row in points]
+    assert times[0] > times[1] > times[2]
+    assert times[1] == times[3] == times[4]
+
+
 @pytest.mark.parametrize(
     ("arguments", "fault"),
     [
+        (["--sensitivity"], "--sensitivity of a policy of your own needs --vary"),
+        (["--sensitivity", "--vary=pace=1"], "pace: say its value in the baseline by --policy-opt"),
+        (
+            ["--sensitivity", "--vary=pace=slow", "--policy-option=pace=1"],
+            "pace is 1: its values are of several types",
+        ),
+        (
+            ["--sensitivity", "--vary=side", "--policy-option=side=left"],
+            "side is left: give its values as side=V1,V2,..",
+        ),
+        (["--tune", "--vary=pa-ce=1"], "--vary 'pa-ce' cannot be a keyword of a policy"),
+        (["--tune", "--vary=pace=-1"], "it would walk backwards"),
+        (["--tune", "--vary=tempo=1"], "unexpected keyword argument 'tempo'"),
+        (["--tune", "--vary=pace=1", "--set=catch_up=0"], "--set is for our own actor"),
+    ],
+)
+def test_wrong_studies_of_a_policy_of_ones_own(
+    arguments: list[str],
+    fault: str,
+    crowds: list[Path],
+    paced: str,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    study = [*crowds, "--policy", paced, "--score-cache", tmp_path / "done"]
+    assert ended(*study, *arguments) == exit_codes.USAGE
+    assert fault in capsys.readouterr().err
+    assert not (tmp_path / "done").exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "fault"),
+    [
+        (
+            ["--tune", "--score-cache=done", "--vary=catch_up=1", "--policy", "straight", "discs"],
+            "--policy: a study is of one policy",
+        ),
+        (
+            ["--tune", "--score-cache=done", "--vary=catch_up=1", "--policy", "straight"],
+            "--policy: straight has no settings that a study could vary",
+        ),
         (["--sensitivity"], "keep its scores with --score-cache FILE"),
         (["--sensitivity", "--tune"], "not allowed with argument --sensitivity"),
         (
@@ -121,11 +231,7 @@ def test_wrong_usage(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     (tmp_path / "some.jsonl").write_text("{}\n")
-    try:
-        code: object = run(crowds[0], *arguments)
-    except SystemExit as end:  # the parser of options raises this
-        code = end.code
-    assert code == exit_codes.USAGE
+    assert ended(crowds[0], *arguments) == exit_codes.USAGE
     shown = capsys.readouterr()
     assert fault in shown.err
     assert shown.out == ""
