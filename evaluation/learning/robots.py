@@ -10,11 +10,10 @@ from numpy.typing import NDArray
 
 from esplanade.evaluation.episodes import Episode
 from esplanade.evaluation.learning.features import features
-from esplanade.evaluation.replay import Replay
+from esplanade.evaluation.people import crowd_of
 from esplanade.evaluation.rules import Rules
 from esplanade.evaluation.simulation import Environment, limit_velocity
 from esplanade.evaluation.waypoints import WallMap, Waypoints
-from esplanade.pedestrians import ReactingCrowd
 
 Floats = NDArray[np.float64]
 
@@ -111,8 +110,8 @@ class Robots:
         stays, now = _matched(present, walk.present)
         changes = walk.positions[now] - before[stays]
         for k, robot in enumerate(going):
-            self._advance(robot, before[stays], changes, np.delete(starts, k, 0),
-                          np.delete(moves, k, 0) * rules.tick_s)  # fmt: skip
+            others = np.delete(starts, k, 0), np.delete(moves, k, 0) * rules.tick_s
+            self._advance(robot, before[stays], changes, *others)
         self._leave_out_who_pops_in(going)
         self._before = (walk.present, walk.positions)
         stays, now = _matched(present, walk.present)
@@ -176,14 +175,5 @@ def _waypoints_to(wall_map: WallMap, goal: tuple[float, float]) -> Waypoints:
     return Waypoints(wall_map, np.array(goal))
 
 
-@lru_cache(maxsize=8)
-def _crowd_of(replay: Replay, reaction: float, seed: int) -> ReactingCrowd:
-    """The people of a replay, made once; without a reaction they walk as they were recorded."""
-    return ReactingCrowd(
-        [replay.trajectory(k) for k in range(len(replay.ids))],
-        replay.first.tolist(),
-        replay.tick_s,
-        walls=np.array(replay.obstacles.obstacles.as_walls()).reshape(-1, 4),
-        reaction=reaction,
-        seed=seed,
-    )
+_crowd_of = lru_cache(maxsize=8)(crowd_of)
+"""The people of a replay, made once."""

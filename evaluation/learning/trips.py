@@ -95,4 +95,4 @@ class TripEnv(gymnasium.Env[Seen, NDArray[np.float32]]):
         )
 
 
-gymnasium.register(ID, entry_point=TripEnv)
+gymnasium.register(ID, entry_point=f"{__name__}:TripEnv")
