@@ -1,4 +1,4 @@
-"""What others cite is the program that is here."""
+"""The citation is that of the program that is here."""
 
 import tomllib
 from pathlib import Path

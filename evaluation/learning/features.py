@@ -61,7 +61,7 @@ def features(
     velocities: Floats,
     nearest: int,
 ) -> NDArray[np.float32]:
-    """What a robot sees, float32 (6 + 5 × `nearest`,), each from -1 to 1.
+    """The numbers that a robot sees, float32 (6 + 5 × `nearest`,), each from -1 to 1.
 
     Parameters
     ----------

@@ -19,7 +19,7 @@ Floats = NDArray[np.float64]
 
 
 class Outcome(StrEnum):
-    """How a trip has ended."""
+    """The end of a trip."""
 
     REACHED = "reached"
     TOUCHED = "touched"
@@ -39,7 +39,7 @@ class Robot:
     velocity: Floats
     waypoint: Floats
     advance_m: float = 0.0
-    """How far the last tick has led toward the waypoint."""
+    """The metres by which the last tick has led toward the waypoint."""
     gap_m: float = np.inf
     """The least distance between surfaces to anybody in the last tick."""
     outcome: Outcome | None = None
@@ -76,7 +76,7 @@ class Robots:
         return Robot(episode, goal, waypoints, start, np.zeros(2), at)
 
     def features(self, robot: Robot, nearest: int) -> NDArray[np.float32]:
-        """What a robot sees of people, and of robots that walked in the last tick."""
+        """The people, and the robots that walked in the last tick, as a robot sees them."""
         others = [each for each in self._walking if each is not robot]
         places, velocities = self._before[1], self._velocities
         if others:

@@ -332,10 +332,10 @@ def spread_allowed(
     by: float,
     radius: float,
 ) -> float:
-    """How far a disc may leave the straight line from a, in `cell`, to b, for each metre from b.
+    """The metres by which a disc may leave the straight line from a to b, for each metre from b.
 
-    It is negative where the disc may not move on the line itself. On flat ground the line is
-    sphere-traced; elsewhere each piece is a cell long at most.
+    The line begins in `cell`. Where the disc may not move on it at all, the answer is negative. On
+    flat ground the line is sphere-traced; elsewhere each piece is a cell long at most.
     """
     way = length(bx - ax, by - ay)
     shortest = 0.5 * grid.layered.cell_m

@@ -1,4 +1,4 @@
-"""What one line of sight says of those beside it, held against the distances of shapely."""
+"""Lines of sight that others allow, held against the distances of shapely."""
 
 import numpy as np
 from shapely import LineString, MultiLineString, Point
