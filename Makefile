@@ -21,7 +21,7 @@ unexport PYTHONDONTWRITEBYTECODE
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .PHONY: help serve test test-boundscheck test-nojit fuzz-files test-lowest test-pythons test-base
-.PHONY: check release-check audit bench chaos chaos-cluster cluster format lock client clean
+.PHONY: check docs release-check audit bench chaos chaos-cluster cluster format lock client clean
 
 help:  ## show what there is to do
 	@echo "Esplanade: people and computer-run actors walk among each other."
@@ -90,6 +90,10 @@ chaos: $(VENV)/.test $(CLIENT)  ## attack a server, and tell what a well-behaved
 chaos-cluster: $(VENV)/.test  ## kill and freeze processes of a cluster; SEED=… SECONDS_LONG=…
 	@$(RUN) -m chaos.cluster --seed $(or $(SEED),0) --seconds $(or $(SECONDS_LONG),120) $(ARGS)
 
+docs: $(VENV)/.dev  ## build the pages of docs/ and a reference of the library as a site in site/
+	@NO_MKDOCS_2_WARNING=1 $(RUN) -m mkdocs build --quiet --strict
+	@echo "Open site/index.html, or call: $(RUN) -m http.server --directory site"
+
 format: $(VENV)/.dev client_web/node_modules/.installed  ## format all sources
 	$(RUN) -m ruff check --fix-only
 	$(RUN) -m ruff format
@@ -102,7 +106,7 @@ client: $(CLIENT)  ## build the web client
 
 clean:  ## remove what was built, and the virtual environment
 	rm -rf $(VENV) server/client_assets client_web/node_modules benchmarks/*/node_modules
-	rm -rf build dist
+	rm -rf build dist site
 	rm -rf .coverage .hypothesis .import_linter_cache .mypy_cache .pytest_cache .ruff_cache
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +
 

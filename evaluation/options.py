@@ -17,7 +17,14 @@ from esplanade.commandline.readers import (
 )
 from esplanade.commandline.recording_settings import add_reading, check_reading
 from esplanade.commandline.trajectory_files import check_suffix
-from esplanade.evaluation.policy_names import address_of, is_outside, label_of, option_value
+from esplanade.evaluation.policy_names import (
+    WITH_OPTIONS,
+    address_of,
+    has_options,
+    is_outside,
+    label_of,
+    option_value,
+)
 from esplanade.evaluation.setting_names import NAMES
 
 POLICIES: Final = {
@@ -26,6 +33,7 @@ POLICIES: Final = {
     "discs": "constant velocities, hard discs, space-time A*",
     "oracle": "the same search, given the true future",
     "human": "the recorded pedestrian's own trajectory",
+    "orca": "ORCA, reciprocal collision avoidance",
     "jupedsim-speed": "JuPedSim, collision-free speed",
     "jupedsim-anticipation": "JuPedSim, anticipation velocity",
     "jupedsim-forces": "JuPedSim, social forces",
@@ -98,8 +106,8 @@ def parser() -> Parser:
         type=_policy_option,
         action="append",
         default=[],
-        help="a keyword for policies of your own, of one of several as CLASS.NAME=VALUE; VALUE is "
-        "JSON or else text; may be given several times",
+        help="a keyword for policies of your own, and for orca; of one of several as "
+        "CLASS.NAME=VALUE; VALUE is JSON or else text; may be given several times",
     )
     trips.add_argument(
         "--episodes",
@@ -302,11 +310,11 @@ def _check_subject(options: Namespace) -> None:
     name, *others = dict.fromkeys(options.policy)
     if others:
         raise UsageError("--policy: a study is of one policy")
-    if is_outside(name):
+    if has_options(name):
         if options.set:
-            raise UsageError("--set is for our own actor; yours has --policy-option NAME=VALUE")
+            raise UsageError("--set is for our own actor; others have --policy-option NAME=VALUE")
         if options.sensitivity and not options.vary:
-            raise UsageError("--sensitivity of a policy of your own needs --vary NAME=V1,V2,..")
+            raise UsageError(f"--sensitivity of {label_of(name)} needs --vary NAME=V1,V2,..")
         return
     if name != "esplanade":
         raise UsageError(f"--policy: {name} has no settings that a study could vary")
@@ -319,12 +327,15 @@ def _check_subject(options: Namespace) -> None:
 
 def _check_policies(options: Namespace) -> None:
     """Whether policies have different names in tables and files, and take the options."""
-    outside = [name for name in options.policy if is_outside(name)]
-    if options.policy_option and not outside:
-        raise UsageError("--policy-option is for policies of your own: --policy FILE.py:CLASS")
+    takers = [name for name in options.policy if has_options(name)]
+    if options.policy_option and not takers:
+        raise UsageError(
+            "--policy-option is for policies of your own, --policy FILE.py:CLASS, and for "
+            f"{', '.join(WITH_OPTIONS)}"
+        )
     for option, _ in options.policy_option:
         owner = option.rpartition(".")[0]
-        if owner and owner not in map(label_of, outside):
+        if owner and owner not in map(label_of, takers):
             raise UsageError(f"--policy-option: there is no policy {owner} among those of --policy")
     labels = [label_of(name) for name in dict.fromkeys(options.policy)]
     for label in labels:

@@ -12,7 +12,7 @@ from typing import Any, Final
 from esplanade.commandline.provenance import digest_of
 from esplanade.evaluation.episodes import Episode, choose_episodes
 from esplanade.evaluation.policies import make_policy
-from esplanade.evaluation.policy_names import is_outside, label_of, own_options
+from esplanade.evaluation.policy_names import has_options, label_of, own_options
 from esplanade.evaluation.replay import Interpolation, Replay
 from esplanade.evaluation.rules import Rules
 from esplanade.evaluation.simulation import Environment
@@ -117,8 +117,8 @@ def plan_trials(
 ) -> list[Trial]:
     """Plan every policy on the same episodes of every recording.
 
-    `settings` are those of our actor, `options` those of policies from outside, by their names or,
-    for one of several, as `MyPolicy.gain`.
+    `settings` are those of our actor, `options` those of the policies that have some, by their
+    names or, for one of several, as `MyPolicy.gain`.
 
     Raises
     ------
@@ -127,7 +127,7 @@ def plan_trials(
     PolicyError
         The package that a policy needs is not installed, or a policy cannot be made.
     """
-    given = {n: own_options(n, options) if is_outside(n) else dict(settings) for n in policies}
+    given = {n: own_options(n, options) if has_options(n) else dict(settings) for n in policies}
     follows = {name: _follows_recording(name, given[name]) for name in policies}
     trials = []
     for source in sources:

@@ -5,7 +5,7 @@ from importlib import import_module
 from typing import Any, Final, NamedTuple, cast
 
 from esplanade.evaluation.policies.policy import Policy, PolicyError
-from esplanade.evaluation.policy_names import is_outside
+from esplanade.evaluation.policy_names import has_options, is_outside
 
 
 class Entry(NamedTuple):
@@ -21,6 +21,7 @@ POLICIES: Final = {
     "discs": Entry("discs", "Discs"),
     "oracle": Entry("oracle", "Oracle"),
     "human": Entry("human", "Human"),
+    "orca": Entry("orca", "Orca"),
     "jupedsim-speed": Entry("jupedsim_models", "speed"),
     "jupedsim-anticipation": Entry("jupedsim_models", "anticipation"),
     "jupedsim-forces": Entry("jupedsim_models", "forces"),
@@ -31,12 +32,13 @@ POLICIES: Final = {
 def make_policy(name: str, settings: Mapping[str, Any] | None = None) -> Policy:
     """Make the policy of a name in `POLICIES`, or one from outside.
 
-    `settings` are those of our actor, or options of a policy from outside; all others ignore them.
+    `settings` are those of our actor, or the options of a policy that has some; all others ignore
+    them.
 
     Raises
     ------
     PolicyError
-        The package that the policy needs is not installed.
+        The package that the policy needs is not installed, or an option cannot be.
     """
     if is_outside(name):
         outside = import_module("esplanade.evaluation.policies.outside.outside")
@@ -46,7 +48,7 @@ def make_policy(name: str, settings: Mapping[str, Any] | None = None) -> Policy:
         Callable[..., Policy],
         getattr(import_module(f"esplanade.evaluation.policies.{entry.module}"), entry.maker),
     )
-    return maker(settings) if name == "esplanade" else maker()
+    return maker(settings) if name == "esplanade" or has_options(name) else maker()
 
 
 __all__ = ["POLICIES", "Policy", "PolicyError", "make_policy"]

@@ -145,7 +145,7 @@ def _require() -> Any:
     except ImportError:
         raise PolicyError(
             "policies of JuPedSim need the package jupedsim: install it, or everything of "
-            "`esplanade[evaluate]`"
+            "`esplanade[peers]`"
         ) from None
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections import OrderedDict
 from dataclasses import replace
+from itertools import pairwise
 from typing import Final
 
 import numpy as np
@@ -40,7 +41,7 @@ _BEYOND_M: Final = 1.0
 """A wave goes so much further than the start, for whoever walks beside its cells."""
 _WAVES_KEPT: Final = 16
 _BYTES_KEPT: Final = 64 * 2**20
-_BYTES_A_CELL: Final = 20
+_BYTES_A_CELL: Final = 24
 
 
 def walker(radius_m: float) -> Body:
@@ -119,6 +120,8 @@ class RouteSearch:
         if not wave.grow(self._targets, _BEYOND_M, PIECE_CELLS):
             return False
         self.route = self._descend(wave)
+        if self.route is not None and not self._grid.bounds_edges(self._body):
+            self.route = self._shortened(self.route)
         return True
 
     def _begin(self) -> WaveFront | None:
@@ -212,6 +215,14 @@ class RouteSearch:
         heights = self._grid.layered.floors[line.cells]
         ends = np.flatnonzero(_turns(line.xy)).tolist()
         return tuple((*line.xy[k].tolist(), float(heights[k])) for k in ends)
+
+    def _shortened(self, route: Route) -> Route:
+        """The route without corners whose neighbours a straight walk joins; cost of a walk each."""
+        kept = [self._start]
+        for corner, after in pairwise(route):
+            if not self._straight(kept[-1], after):
+                kept.append(corner)
+        return (*kept[1:], route[-1])
 
     def _straight(self, start: Point, goal: Point) -> bool:
         return leads_straight(self._grid, start, goal, self._clearance_m)

@@ -1,11 +1,13 @@
 """Every policy in small cases: it arrives, keeps clear of people, and is reset completely."""
 
 from importlib.util import find_spec
+from typing import Any
 
 import numpy as np
 import pytest
+from _pytest.mark.structures import ParameterSet
 
-from esplanade.evaluation.policies import POLICIES, PolicyError, jupedsim_models, make_policy
+from esplanade.evaluation.policies import POLICIES, PolicyError, jupedsim_models, make_policy, orca
 from esplanade.evaluation.policies.policy import Policy
 from esplanade.evaluation.replay import Replay
 from esplanade.evaluation.simulation import Environment, EpisodeResult, run_episode
@@ -16,15 +18,25 @@ HEDGE = Obstacles(segments=(((5.0, -3.0), (5.0, 1.5)),))
 ROBOT = walk("1", 0.0, (0, 0), (10, 0))
 HEAD_ON = walk("2", 0.0, (10, 0.05), (-2, 0.05))
 
-PEERS = ["jupedsim-speed", "jupedsim-anticipation", "jupedsim-forces"]
-needs_jupedsim = pytest.mark.skipif(find_spec("jupedsim") is None, reason="jupedsim is absent")
+PEERS = {
+    "orca": "pyrvo",
+    "jupedsim-speed": "jupedsim",
+    "jupedsim-anticipation": "jupedsim",
+    "jupedsim-forces": "jupedsim",
+}
+"""The packages that policies need."""
+
+
+def with_its_package(name: str) -> ParameterSet | str:
+    """A policy as a parameter, which is skipped where its package is absent."""
+    package = PEERS.get(name)
+    if package is None or find_spec(package) is not None:
+        return name
+    return pytest.param(name, marks=pytest.mark.skip(reason=f"{package} is absent"))
+
+
 every_policy = pytest.mark.parametrize(
-    "name",
-    [
-        pytest.param(name, marks=needs_jupedsim) if name in PEERS else name
-        for name in POLICIES
-        if name != "human"
-    ],
+    "name", [with_its_package(name) for name in POLICIES if name != "human"]
 )
 
 
@@ -106,5 +118,34 @@ def test_peers_that_are_not_installed_say_what_helps(
         raise ImportError(module)
 
     monkeypatch.setattr(jupedsim_models, "import_module", absent)
-    with pytest.raises(PolicyError, match=r"need the package jupedsim: install it, or .*evaluate"):
+    monkeypatch.setattr(orca, "import_module", absent)
+    needs = rf"needs? the package {PEERS[name]}: install it, or .*esplanade\[peers\]"
+    with pytest.raises(PolicyError, match=needs):
         make_policy(name)
+
+
+@pytest.mark.skipif(find_spec("pyrvo") is None, reason="pyrvo is absent")
+def test_orca_gives_somebody_who_stands_the_room_that_it_is_told() -> None:
+    stands = walk("2", 0.0, (5.0, 0.0), (5.0, 0.2), speed_mps=0.01)
+    least = {
+        margin_m: run(
+            "orca", environment(ROBOT, stands), make_policy("orca", {"margin_m": margin_m})
+        ).score.clearance_m
+        for margin_m in (0.02, 0.5)
+    }
+    assert 0.0 < least[0.02] < 0.2
+    assert least[0.5] > 0.4
+
+
+@pytest.mark.skipif(find_spec("pyrvo") is None, reason="pyrvo is absent")
+@pytest.mark.parametrize(
+    ("options", "why"),
+    [
+        ({"horizon": 2.0}, "no option horizon; there are horizon_s, wall_horizon_s, margin_m"),
+        ({"horizon_s": "long"}, "horizon_s='long' is no number from 0 to 100"),
+        ({"margin_m": -1.0}, "margin_m=-1.0 is no number from 0 to 100"),
+    ],
+)
+def test_options_of_orca_are_checked(options: dict[str, Any], why: str) -> None:
+    with pytest.raises(PolicyError, match=why):
+        make_policy("orca", options)

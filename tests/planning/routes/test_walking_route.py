@@ -19,6 +19,7 @@ from esplanade.planning.routes.walking_route import (
     Route,
     RouteSearch,
     SharedWaves,
+    leads_straight,
 )
 from esplanade.planning.routes.wave_front import NO_TARGETS, WaveFront
 from tests.naive.descent import descend
@@ -120,7 +121,22 @@ def test_the_compiled_walk_climbs_stairs_as_the_plain_one_does() -> None:
     plain = descend(grid, wave, start, toward, goal, RADIUS_M, STEP_M, TURN_COS, 1000)
     assert route is not None
     assert plain is not None
-    assert route == pytest.approx(np.array([*plain, goal]), abs=0.01)
+    corners = np.array([*plain, goal])
+    kept = [int(np.abs(corners - corner).sum(axis=1).argmin()) for corner in route]
+    assert kept == sorted(set(kept))  # those that a straight walk passes by are left out
+    assert kept[-1] == len(plain)
+    assert route == pytest.approx(corners[kept], abs=0.01)
+
+
+def test_no_corner_of_a_route_can_be_left_out() -> None:
+    grid = LayeredGrid.from_scene(storeyed())
+    start, goal = (12.0, 6.0, 0.0), (12.0, 6.0, UPPER_M)
+    route = route_of(SharedWaves(grid), start, goal)
+    assert route is not None
+    points = [start, *route]
+    assert len(points) > 3
+    for before, after in zip(points, points[2:], strict=False):
+        assert not leads_straight(grid, before, after, RADIUS_M)
 
 
 @given(lines(0.5, 7.5, 4), points(0.3, 7.7), points(0.3, 7.7))
