@@ -10,6 +10,7 @@ from esplanade.commandline.output import console, made_folder, write_json
 from esplanade.commandline.progress import progress
 from esplanade.evaluation import forecast_report, plotting, report, report_files, tables
 from esplanade.evaluation.console import named_sources, rules_of, walk
+from esplanade.evaluation.dask_cluster import ClusterError
 from esplanade.evaluation.policies import PolicyError
 from esplanade.evaluation.runner import TrialResult, ready_policy
 from esplanade.evaluation.score_cache import ScoreCacheError
@@ -33,7 +34,14 @@ def run(options: Namespace) -> int:
             _forecasts(options)
         elif _trips(options) and options.strict:
             return exit_codes.FAILED
-    except (SettingError, ScoreCacheError, RecordingError, PolicyError, WritingError) as error:
+    except (
+        ClusterError,
+        PolicyError,
+        RecordingError,
+        ScoreCacheError,
+        SettingError,
+        WritingError,
+    ) as error:
         raise UsageError(str(error)) from None
     return exit_codes.OK
 

@@ -1,12 +1,14 @@
 """The recordings that the command line names, and the run of trials with a progress bar."""
 
 from argparse import Namespace
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import replace
 
 from esplanade.commandline.errors import UsageError
 from esplanade.commandline.progress import progress
 from esplanade.commandline.recording_settings import tell_recording
+from esplanade.evaluation.dask_cluster import DaskCluster
 from esplanade.evaluation.rules import Rules
 from esplanade.evaluation.runner import TrialResult, run_trials
 from esplanade.evaluation.score_cache import ScoreCache
@@ -70,23 +72,34 @@ def rules_of(options: Namespace) -> Rules:
 def walk(
     trials: Sequence[Trial], options: Namespace, files: EpisodeFiles | None = None
 ) -> list[TrialResult]:
-    """Run all trials with a progress bar.
+    """Run all trials with a progress bar, on this machine or on a cluster.
 
     Raises
     ------
     UsageError
         A recording has no episodes.
+    ClusterError
+        The cluster cannot be used.
     """
     for trial in trials:
         if not trial.episodes:
             raise UsageError(f"{trial.source.path}: it has no trip that can be an episode")
-    with ScoreCache(options.score_cache) as score_cache, progress(time_left=True) as shown:
+    with (
+        ScoreCache(options.score_cache) as score_cache,
+        _cluster(options) as cluster,
+        progress(time_left=True) as shown,
+    ):
         task = shown.add_task(
             "running episodes", total=sum(len(trial.episodes) for trial in trials)
         )
         try:
             return run_trials(
-                trials, options.processes, lambda n: shown.advance(task, n), score_cache, files
+                trials,
+                options.processes,
+                lambda n: shown.advance(task, n),
+                score_cache,
+                files,
+                cluster,
             )
         except KeyboardInterrupt:
             if options.score_cache is not None:
@@ -94,3 +107,16 @@ def walk(
                     f"interrupted; the same command continues from {options.score_cache}"
                 )
             raise
+
+
+@contextmanager
+def _cluster(options: Namespace) -> Iterator[DaskCluster | None]:
+    """The cluster that --on names, if any."""
+    if options.on is None:
+        yield None
+        return
+    cluster = DaskCluster(options.on)
+    try:
+        yield cluster
+    finally:
+        cluster.close()

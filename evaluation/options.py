@@ -3,6 +3,7 @@
 from argparse import ArgumentTypeError, Namespace
 from pathlib import Path
 from typing import Any, Final
+from urllib.parse import urlsplit
 
 from esplanade.commandline.errors import UsageError
 from esplanade.commandline.parser import Parser, suggestion
@@ -160,6 +161,12 @@ def parser() -> Parser:
         help="processes that share the episodes [default: 2]",
     )
     trips.add_argument(
+        "--on",
+        metavar="dask://HOST:PORT",
+        type=_scheduler,
+        help="let the workers of a Dask cluster walk the episodes, by the address of its scheduler",
+    )
+    trips.add_argument(
         "--strict",
         action="store_true",
         help="exit with 1 if an episode failed; refuse recordings with glitches of tracking",
@@ -270,6 +277,8 @@ def check(options: Namespace) -> None:
     if options.trajectories is not None:
         if options.sensitivity or options.tune or options.prediction or options.fit:
             raise UsageError("--trajectories is for episodes that are walked once")
+        if options.on is not None:
+            raise UsageError("--trajectories is for episodes that this machine walks, without --on")
         try:
             check_suffix(options.trajectories)
         except ValueError as error:
@@ -341,6 +350,18 @@ def _check_policies(options: Namespace) -> None:
     for label in labels:
         if labels.count(label) > 1:
             raise UsageError(f"--policy: two of them are called {label}; give one another name")
+
+
+def _scheduler(text: str) -> str:
+    """The address of a scheduler as Dask has it, from `dask://HOST:PORT`."""
+    parts = urlsplit(text)
+    try:
+        whole = parts.scheme == "dask" and parts.hostname and parts.port and not parts.path
+    except ValueError:
+        whole = False
+    if not whole:
+        raise ArgumentTypeError(f"{text!r} is not like dask://127.0.0.1:8786")
+    return f"tcp://{parts.netloc}"
 
 
 def _policy(text: str) -> str:

@@ -5,7 +5,7 @@ import signal
 from collections.abc import Callable, Collection, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass, replace
-from typing import Any, Final
+from typing import Any, Final, Protocol
 
 from esplanade.evaluation.policies import Policy, make_policy
 from esplanade.evaluation.rules import Rules
@@ -16,7 +16,16 @@ from esplanade.evaluation.trajectory_files import EpisodeFiles
 from esplanade.evaluation.trials import Source, Trial
 
 EPISODES_AT_ONCE: Final = 5
+Keep = Callable[[int, Trial, Sequence[Score], str], None]
+"""Keeps the scores of a chunk of the trial of that number, and the name of its worker."""
 WARM_UP_S: Final = 1.0
+
+
+class Cluster(Protocol):
+    """Other machines that walk episodes."""
+
+    def run(self, parts: Sequence[tuple[int, Trial]], keep: Keep) -> None:
+        """Walk all chunks, each of the trial of that number, and keep what has been walked."""
 
 
 @dataclass(frozen=True)
@@ -33,8 +42,11 @@ def run_trials(
     report: Callable[[int], None],
     score_cache: ScoreCache | None = None,
     files: EpisodeFiles | None = None,
+    cluster: Cluster | None = None,
 ) -> list[TrialResult]:
     """Run all trials; `report` is called with the number of episodes that have been added.
+
+    They are run by the workers of `cluster`, or else by so many processes of this machine.
 
     With `files`, all episodes are run and written. Without, those whose score is in the cache are
     not run again. Every new score is in the cache, even after an interrupt: this then ends as soon
@@ -46,8 +58,8 @@ def run_trials(
     if known:
         report(known)
 
-    def keep(index: int, part: Trial, scores: Sequence[Score]) -> None:
-        score_cache.add(part, scores)
+    def keep(index: int, part: Trial, scores: Sequence[Score], worker: str) -> None:
+        score_cache.add(part, scores, worker)
         found[index] |= {score.number: score for score in scores}
         report(len(scores))
 
@@ -56,7 +68,10 @@ def run_trials(
         for index, trial in enumerate(trials)
         for part in _parts(trial, found[index].keys())
     ]
-    _run_parts(parts, processes, keep, files)
+    if cluster is None:
+        _run_parts(parts, processes, keep, files)
+    elif parts:
+        cluster.run(parts, keep)
     return [
         TrialResult(trial, tuple(scores[episode.number] for episode in trial.episodes))
         for trial, scores in zip(trials, found, strict=True)
@@ -84,32 +99,32 @@ def _parts(trial: Trial, done: Collection[int]) -> Iterator[Trial]:
 def _run_parts(
     parts: Sequence[tuple[int, Trial]],
     processes: int,
-    keep: Callable[[int, Trial, Sequence[Score]], None],
+    keep: Keep,
     files: EpisodeFiles | None,
 ) -> None:
     if processes == 1:
         for index, part in parts:
-            keep(index, part, _run(part, files))
-        _forget()
+            keep(index, part, run_part(part, files), "")
+        forget()
         return
     spawn = multiprocessing.get_context("spawn")
     with ProcessPoolExecutor(processes, spawn, _leave_interrupts_to_the_parent) as pool:
-        waiting = {pool.submit(_run, part, files): (index, part) for index, part in parts}
+        waiting = {pool.submit(run_part, part, files): (index, part) for index, part in parts}
         try:
             for future in as_completed(waiting):
-                keep(*waiting.pop(future), future.result())
+                keep(*waiting.pop(future), future.result(), "")
         finally:
             pool.shutdown(cancel_futures=True)
             for future, (index, part) in waiting.items():
                 if not future.cancelled() and future.exception() is None:
-                    keep(index, part, future.result())
+                    keep(index, part, future.result(), "")
 
 
 def _leave_interrupts_to_the_parent() -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
-def _forget() -> None:
+def forget() -> None:
     """End the policy of the previous chunk."""
     for policy in _last.values():
         policy.close()
@@ -119,11 +134,11 @@ def _forget() -> None:
 _last: dict[tuple[Source, str, Rules, tuple[tuple[str, Any], ...]], Policy] = {}
 
 
-def _run(part: Trial, files: EpisodeFiles | None = None) -> list[Score]:
+def run_part(part: Trial, files: EpisodeFiles | None = None) -> list[Score]:
     """Run one chunk of episodes; the policy of the previous chunk is reused if it is the same."""
     key = (part.source, part.policy, part.rules, part.settings)
     if key not in _last:
-        _forget()
+        forget()
         _last[key] = ready_policy(part)
     environment = part.source.environment(part.rules.tick_s)
     scores = []

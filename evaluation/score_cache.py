@@ -23,6 +23,7 @@ _SHOW_ONLY: Final = frozenset(
         "calibration",
         "cli",
         "console",
+        "dask_cluster",
         "forecast_report",
         "fits",
         "forecasts",
@@ -89,13 +90,18 @@ class ScoreCache:
         known = ((e.number, self._scores.get((digest, *_trip(e)))) for e in trial.episodes)
         return {k: replace(score, number=k) for k, score in known if score is not None}
 
-    def add(self, trial: Trial, scores: Sequence[Score]) -> None:
-        """Keep the scores of a trial's episodes; they are in the file when this returns."""
+    def add(self, trial: Trial, scores: Sequence[Score], worker: str = "") -> None:
+        """Keep the scores of a trial's episodes; they are in the file when this returns.
+
+        `worker` names the process of a cluster that has walked them.
+        """
         digest = _digest_of(trial)
         lines = []
         for episode, score in zip(trial.episodes, scores, strict=True):
             self._scores[digest, *_trip(episode)] = score
-            lines.append(json.dumps(_line(digest, trial, episode, score), allow_nan=False) + "\n")
+            lines.append(
+                json.dumps(_line(digest, trial, episode, score, worker), allow_nan=False) + "\n"
+            )
         if self._file is not None:
             try:
                 self._file.write("".join(lines))
@@ -116,8 +122,8 @@ def _entries(path: Path, text: str) -> dict[_Key, Score]:
     return found
 
 
-def _line(digest: str, trial: Trial, episode: Episode, score: Score) -> dict[str, Any]:
-    """The content of one line; recording, policy and settings are there for human readers."""
+def _line(digest: str, trial: Trial, episode: Episode, score: Score, worker: str) -> dict[str, Any]:
+    """The content of one line; recording, policy, settings and worker are for human readers."""
     pedestrian, reverse = _trip(episode)
     return {
         "trial": digest,
@@ -126,6 +132,7 @@ def _line(digest: str, trial: Trial, episode: Episode, score: Score) -> dict[str
         "settings": {name: _finite(value) for name, value in trial.settings},
         "pedestrian": pedestrian,
         "reverse": reverse,
+        **({"worker": worker} if worker else {}),
         "score": {name: _finite(value) for name, value in asdict(score).items()},
     }
 
@@ -150,9 +157,27 @@ def _digest_of(trial: Trial) -> str:
     """A digest of everything that the scores of a trial depend on, except the episode."""
     settings = sorted((name, repr(value)) for name, value in trial.settings)
     rules = sorted(asdict(trial.rules).items())
-    code = _code_digest(), digest_of_policy(trial.policy) if is_outside(trial.policy) else ""
-    inputs = repr((code, _recording_digest(trial.source), trial.policy, rules, settings))
+    files = digests_of(trial)
+    code = files["code"], files["policy"]
+    inputs = repr((code, files["recording"], trial.policy, rules, settings))
     return hashlib.sha256(inputs.encode()).hexdigest()[:16]
+
+
+def digests_of(trial: Trial) -> dict[str, str]:
+    """Digests of all files that the scores of a trial depend on.
+
+    They are of the `code`, the `recording` with its walls, and the `policy`, empty for one of ours.
+
+    Raises
+    ------
+    OSError
+        A file cannot be read.
+    """
+    return {
+        "code": _code_digest(),
+        "recording": _recording_digest(trial.source),
+        "policy": digest_of_policy(trial.policy) if is_outside(trial.policy) else "",
+    }
 
 
 @cache
