@@ -25,7 +25,7 @@ function threeIn(folder) {
 }
 
 export default defineConfig(
-  { ignores: ["node_modules/", "dist/"] },
+  { ignores: ["node_modules/", "dist/", "codec/dist/"] },
   js.configs.recommended,
   ...tseslint.configs.strictTypeChecked,
   {

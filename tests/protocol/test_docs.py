@@ -221,11 +221,11 @@ def test_the_servers_defaults() -> None:
     ("title", "place", "record"),
     [
         ("Snapshots", 1, RECORD),
-        ("Steps", 1, STEP),
-        ("Steps", 2, FOOTPRINT),
-        ("Steps", 3, LANDING),
-        ("Steps", 4, END),
-        ("Steps", 5, DIFFERENCES),
+        ("Layout of steps", 1, STEP),
+        ("Layout of steps", 2, FOOTPRINT),
+        ("Layout of steps", 3, LANDING),
+        ("Layout of steps", 4, END),
+        ("Layout of steps", 5, DIFFERENCES),
     ],
 )
 def test_the_layout_of_a_record(title: str, place: int, record: np.dtype[np.void]) -> None:
@@ -248,9 +248,11 @@ def test_versions() -> None:
 
 
 def test_lengths_in_running_text() -> None:
-    assert f"f is {', '.join(map(str, FAR))} for keys 1 to 4" in section("Steps")
-    assert f"Kind {WALKING}, a walking step, has {STEP.itemsize} bytes" in section("Steps")
-    assert f"same {STEPS_HEAD_BYTES} bytes" in section("Steps")
+    assert f"f is {', '.join(map(str, FAR))} for keys 1 to 4" in section("Layout of steps")
+    assert f"Kind {WALKING}, a walking step, has {STEP.itemsize} bytes" in section(
+        "Layout of steps"
+    )
+    assert f"same {STEPS_HEAD_BYTES} bytes" in section("Layout of steps")
     assert f"{RECORD.itemsize} bytes each" in section("Snapshots")
     assert f"same {SNAPSHOT_HEAD_BYTES} bytes" in section("Snapshots")
 
@@ -290,7 +292,7 @@ def numbers(values: Floats, digits: int = 2) -> str:
 
 
 def test_the_worked_example_of_steps() -> None:
-    text = section("Steps")
+    text = section("Layout of steps")
     message = decode_server(example_of(text))
     assert isinstance(message, StepBlock)
     assert message.tick == 402
