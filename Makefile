@@ -21,7 +21,7 @@ unexport PYTHONDONTWRITEBYTECODE
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .PHONY: help serve test test-boundscheck test-nojit fuzz-files test-lowest test-pythons test-base
-.PHONY: check docs release-check audit bench chaos chaos-cluster cluster format lock client clean
+.PHONY: check docs study release-check audit bench chaos chaos-cluster cluster format lock client clean
 
 help:  ## show what there is to do
 	@echo "Esplanade: people and computer-run actors walk among each other."
@@ -83,6 +83,9 @@ bench: $(VENV)/.test  ## measure what must stay fast, each part by itself
 	@for name in $(BENCHMARKS); do \
 	  echo "--- $$name"; $(RUN) -m benchmarks.$$name $(ARGS) || exit; \
 	done
+
+study: $(VENV)/.test  ## compare our actor with its peers among recorded and reacting people
+	@$(RUN) -m benchmarks.study $(ARGS)
 
 chaos: $(VENV)/.test $(CLIENT)  ## attack a server, and tell what a well-behaved client saw
 	@$(RUN) -m chaos $(ARGS)

@@ -228,6 +228,25 @@ class Navigator:
         why = MoveReason(int(trips.moved_why[row]))
         return MovedEnd(float(trips.moved_m[row]), why, target, place)
 
+    def waypoint(self, actor_id: Hashable) -> Point | None:
+        """The point that an actor's way leads straight to: its goal, or a corner before it.
+
+        None where no way leads, or it is not known yet.
+        """
+        row, agents = self.table.row(actor_id), self.table.agents
+        potential, cell = int(agents.potential_rows[row]), int(agents.cells[row])
+        x, y = agents.positions[row].tolist()
+        for _ in range(2):
+            if potential < 0 or cell < 0:
+                return None
+            left_m, wx, wy, _ = self.potentials.arrays[potential, cell].tolist()
+            if not math.isfinite(left_m):
+                return None
+            if left_m == 0.0 or math.hypot(wx - x, wy - y) >= 0.25 * self.grid.cell_m:
+                break
+            cell = self._cell((wx, wy), self._floor(cell))
+        return wx, wy
+
     def prepare_goals(
         self, goals: Iterable[tuple[Point, float]], parameters: ActorParameters
     ) -> None:
@@ -492,8 +511,12 @@ class Navigator:
         else:
             self._history.observe(people)
 
-    def advance(self) -> None:
-        """Plan and take one step for every actor; `table` holds the result."""
+    def advance(self, steered: Mapping[Hashable, Point] | None = None) -> None:
+        """Plan and take one step for every actor; `table` holds the result.
+
+        Those in `steered` go at these velocities, m/s, within their limits, and plan nothing; walls
+        and other actors still stop them.
+        """
         self.potentials.renew_one()
         self._prediction = self._history.predict(self.grid, self.plan.slices, self.plan.slice_s)
         if len(self.table):
@@ -510,6 +533,7 @@ class Navigator:
                 self.tick_s,
                 due,
                 self.table.trips.stalled_s,
+                {self.table.row(who): velocity for who, velocity in (steered or {}).items()},
             )
             self._batch.settle(self._prediction, self.tick_s)
             self.planning_interval.count += 1

@@ -80,6 +80,7 @@ class Population:
         self._asked: list[tuple[Hashable, Behaviour, Any]] = []
         """Those asked in this tick, each with its behaviour and chance as they were before."""
         self._held: set[Hashable] = set()
+        self._steered: dict[Hashable, tuple[float, float]] = {}
         self._people: Mapping[Hashable, Goal] = {}
         self._placing = Placing(grid, scene)
         self._minds = SavedMinds()
@@ -236,6 +237,13 @@ class Population:
         else:
             self._held.discard(actor_id)
             self.table.trips.ask_at_s[row] = -np.inf
+
+    def steer(self, velocities: Mapping[Hashable, tuple[float, float]] | None) -> None:
+        """Let some actors go at these velocities, m/s, in the next tick, instead of planning.
+
+        Those who are not there by then, or held, plan as ever. None lets all plan.
+        """
+        self._steered = {} if velocities is None else {**self._steered, **velocities}
 
     def held(self, actor_id: Hashable) -> bool:
         """Whether an actor is held."""
@@ -397,6 +405,7 @@ class Population:
             self.doors_wanted, self.said = {}, []
             raise
         finally:
+            self._steered = {}
             self._tick += 1
 
     def stand(self, people: Mapping[Hashable, Goal]) -> None:
@@ -404,7 +413,7 @@ class Population:
         with suppress(ValueError):
             self.navigator.observe(people)
             self._people = people
-        self.doors_wanted, self.said = {}, []
+        self.doors_wanted, self.said, self._steered = {}, [], {}
         self._tick += 1
 
     def _plan(self) -> None:
@@ -418,7 +427,12 @@ class Population:
             for row in rows:
                 self._ask(ids[row], row, self._people, time_s)
         before = _Before(self.table.agents.reasons.copy(), trips.outcomes.copy())
-        self.navigator.advance()
+        steered = {
+            who: velocity
+            for who, velocity in self._steered.items()
+            if who in self.table and who not in self._held
+        }
+        self.navigator.advance(steered)
         self._keep_account(before)
 
     def _ask(

@@ -18,15 +18,9 @@ from esplanade.commandline.readers import (
 )
 from esplanade.commandline.recording_settings import add_reading, check_reading
 from esplanade.commandline.trajectory_files import check_suffix
-from esplanade.evaluation.policy_names import (
-    WITH_OPTIONS,
-    address_of,
-    has_options,
-    is_outside,
-    label_of,
-    option_value,
-)
+from esplanade.evaluation.policy_options import WITH_OPTIONS, has_options
 from esplanade.evaluation.setting_names import NAMES
+from esplanade.policies.names import address_of, is_outside, label_of, option_value
 
 POLICIES: Final = {
     "esplanade": "the project's own actor",

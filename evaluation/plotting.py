@@ -10,10 +10,11 @@ from numpy.typing import NDArray
 
 from esplanade.commandline.pictures import save
 from esplanade.evaluation.episodes import Episode
-from esplanade.evaluation.policies.policy import DebugInfo, Observation, Policy, PolicyError
+from esplanade.evaluation.policies.policy import DebugInfo, Observation, Policy
 from esplanade.evaluation.rules import Rules
 from esplanade.evaluation.scores import Score
 from esplanade.evaluation.simulation import Environment, run_episode
+from esplanade.policies.errors import PolicyError
 
 Floats = NDArray[np.float64]
 

@@ -11,13 +11,13 @@ from types import TracebackType
 from typing import Any, Final, Self, TextIO
 
 from esplanade.evaluation.episodes import Episode
-from esplanade.evaluation.policy_names import digest_of_policy, is_outside
 from esplanade.evaluation.scores import Score
 from esplanade.evaluation.trials import Source, Trial
+from esplanade.policies.names import digest_of_policy, is_outside
 from esplanade.recordings import walls_beside
 
 _ROOT: Final = Path(__file__).resolve().parents[1]
-_PACKAGES: Final = ("actors", "evaluation", "pedestrians", "planning", "recordings")
+_PACKAGES: Final = ("actors", "evaluation", "pedestrians", "planning", "policies", "recordings")
 _SHOW_ONLY: Final = frozenset(
     {
         "calibration",

@@ -10,18 +10,12 @@ from numpy.typing import NDArray
 from esplanade.evaluation.contacts import ContactMonitor
 from esplanade.evaluation.episodes import Episode
 from esplanade.evaluation.people import People, ReactingPeople
-from esplanade.evaluation.policies.policy import (
-    Observation,
-    Person,
-    Policy,
-    PolicyFaultError,
-    Prescient,
-    Task,
-)
+from esplanade.evaluation.policies.policy import Observation, Person, Policy, Prescient, Task
 from esplanade.evaluation.replay import Replay
 from esplanade.evaluation.rules import Rules
 from esplanade.evaluation.scores import Score, score
 from esplanade.evaluation.waypoints import WallMap, Waypoints
+from esplanade.policies.errors import PolicyFaultError
 
 Floats = NDArray[np.float64]
 

@@ -12,10 +12,11 @@ from typing import Any, Final
 from esplanade.commandline.provenance import digest_of
 from esplanade.evaluation.episodes import Episode, choose_episodes
 from esplanade.evaluation.policies import make_policy
-from esplanade.evaluation.policy_names import has_options, label_of, own_options
+from esplanade.evaluation.policy_options import has_options
 from esplanade.evaluation.replay import Interpolation, Replay
 from esplanade.evaluation.rules import Rules
 from esplanade.evaluation.simulation import Environment
+from esplanade.policies.names import label_of, own_options
 from esplanade.recordings import Crowd, Given, Obstacles, read_crowd, read_obstacles, walls_beside
 
 READ_AS_IT_SAYS: Final = Given()

@@ -8,9 +8,10 @@ from functools import partial
 from esplanade.actors import Population
 from esplanade.planning import LayeredGrid
 from esplanade.planning.routes.storey_heights import reached_from, storeys_of
+from esplanade.policies.names import label_of
 from esplanade.server.checkpoint.parts import with_faults_told
 from esplanade.server.loading import LoadedScene, LoadingError
-from esplanade.server.populating import default_roster, names_of, populate_from
+from esplanade.server.populating import default_roster, names_of, populate_from, with_driven
 from esplanade.server.recovery import Recovery
 from esplanade.server.rehearsal import rehearse, rehearse_walking
 from esplanade.server.roster import Roster
@@ -46,6 +47,8 @@ def _build_warm(
     try:
         grid = LayeredGrid.from_scene(loaded.scene)
         roster = loaded.roster or default_roster(loaded.scene, settings.actors, seed)
+        if settings.policy is not None:
+            roster = with_driven(roster, label_of(settings.policy), settings.policy_actors)
         names = names_of(roster)
         saved = None if recovery is None else recovery.zone
         if saved is not None:

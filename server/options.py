@@ -20,6 +20,8 @@ from esplanade.commandline.readers import (
 from esplanade.commandline.recording_settings import READING, check_reading, misplaced
 from esplanade.commandline.settings import Setting, Settings, settings_parser
 from esplanade.commandline.trajectory_files import check_suffix
+from esplanade.server.driving.settings import DRIVING
+from esplanade.server.driving.settings import check as check_driving
 from esplanade.server.trajectories.rates import ticks_between
 
 _PORT: Final = Whole(0, 65535)
@@ -61,6 +63,7 @@ _WORLD: Final = {
         None,
         "ticks",
     ),
+    **DRIVING,
 }
 _PEOPLE: Final = {
     "person_radius_m": Setting("radius of a person", Number(0.05, 1.0), 0.25, "m"),
@@ -385,6 +388,7 @@ def check(given: Mapping[str, Any]) -> None:
         raise ValueError(f"{name}: it says how a crowd is read, but none is given")
     check_reading(given)
     _check_trajectories(given)
+    check_driving(given)
     for name in RECORD_ONLY:
         if given.get(name) and not given.get("record"):
             raise ValueError(f"{name}: it belongs to --record, but none is given")

@@ -9,6 +9,7 @@ from esplanade.actors import ActorSpec, BehaviourSpec, Newcomer, Population
 from esplanade.actors.actor_spec import ZONE, actor_id
 from esplanade.actors.behaviour_spec import GuideSpec, PatrolSpec, WanderSpec
 from esplanade.planning import LayeredGrid, Scene
+from esplanade.server.driving.settings import DRIVEN_TAG
 from esplanade.server.roster import Roster
 
 NAMES: Final = (
@@ -96,6 +97,20 @@ def default_roster(scene: Scene, count: int, seed: int, zone: str = ZONE) -> Ros
             )
         )
     return Roster(actors=tuple(actors))
+
+
+def with_driven(roster: Roster, policy: str, count: int, zone: str = ZONE) -> Roster:
+    """A roster with so many wanderers more, which a policy of that label drives."""
+    driven = tuple(
+        ActorSpec(
+            id=actor_id(f"policy-{number}", zone),
+            name=f"{policy[:28]} {number}" if count > 1 else policy[:32],
+            behaviour=WanderSpec(),
+            tags=(DRIVEN_TAG,),
+        )
+        for number in range(1, count + 1)
+    )
+    return roster.model_copy(update={"actors": (*roster.actors, *driven)})
 
 
 def _behaviour(number: int, scene: Scene, random: np.random.Generator) -> BehaviourSpec:

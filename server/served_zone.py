@@ -13,6 +13,7 @@ from esplanade.server.building import build_world
 from esplanade.server.commanding import commanding, live_view
 from esplanade.server.console.console import Console
 from esplanade.server.console.presets import Presets
+from esplanade.server.driving.keeping import drivers_of
 from esplanade.server.kept import Kept
 from esplanade.server.link.local import LocalLink
 from esplanade.server.live.bulletin import Bulletin
@@ -248,6 +249,7 @@ async def served_zone(
         ticker.trajectories = await stack.enter_async_context(
             trajectories_kept(settings, loaded, world, metrics, live.bulletin)
         )
+        ticker.drivers = await stack.enter_async_context(drivers_of(settings, world, metrics))
         ticker.recorder = console.state.recorder = await stack.enter_async_context(
             recorder_of(settings, world, zone.name, metrics, live.bulletin)
         )

@@ -40,6 +40,9 @@ class ServerSettings(BaseSettings):
     seed: int = _field("seed")
     tick_rate: int = _field("tick_rate")
     planning_interval: int | None = _field("planning_interval")
+    policy: str | None = _field("policy")
+    policy_actors: int = _field("policy_actors")
+    policy_options: str | None = _field("policy_options")
 
     person_radius_m: float = _field("person_radius_m")
     person_max_speed_mps: float = _field("person_max_speed_mps")

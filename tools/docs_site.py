@@ -15,7 +15,7 @@ REFERENCE: Final = {
     "planning": ("Planning", ["esplanade.planning"]),
     "actors": ("Actors", ["esplanade.actors"]),
     "recordings": ("Recordings", ["esplanade.recordings"]),
-    "policies": ("Policies of your own", ["esplanade.evaluation.policies.outside.interface"]),
+    "policies": ("Policies of your own", ["esplanade.policies.interface"]),
     "learning": (
         "Environments for learners",
         ["esplanade.evaluation.learning.trips", "esplanade.evaluation.learning.crowds"],

@@ -4,8 +4,10 @@ from collections.abc import Callable, Mapping
 from importlib import import_module
 from typing import Any, Final, NamedTuple, cast
 
-from esplanade.evaluation.policies.policy import Policy, PolicyError
-from esplanade.evaluation.policy_names import has_options, is_outside
+from esplanade.evaluation.policies.policy import Policy
+from esplanade.evaluation.policy_options import has_options
+from esplanade.policies.errors import PolicyError
+from esplanade.policies.names import is_outside
 
 
 class Entry(NamedTuple):
@@ -41,7 +43,7 @@ def make_policy(name: str, settings: Mapping[str, Any] | None = None) -> Policy:
         The package that the policy needs is not installed, or an option cannot be.
     """
     if is_outside(name):
-        outside = import_module("esplanade.evaluation.policies.outside.outside")
+        outside = import_module("esplanade.evaluation.policies.outside")
         return cast(Policy, outside.Outside(name, settings))
     entry = POLICIES[name]
     maker = cast(

@@ -13,7 +13,8 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from esplanade.evaluation.policies.policy import Observation, Person, Policy, PolicyError, Task
+from esplanade.evaluation.policies.policy import Observation, Person, Policy, Task
+from esplanade.policies.errors import PolicyError
 
 Floats = NDArray[np.float64]
 

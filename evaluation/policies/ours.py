@@ -10,10 +10,11 @@ from pydantic import ValidationError
 
 from esplanade.actors import ActorParameters, Navigator
 from esplanade.evaluation.obstacles import ObstacleSet
-from esplanade.evaluation.policies.policy import DebugInfo, Observation, Policy, PolicyError, Task
+from esplanade.evaluation.policies.policy import DebugInfo, Observation, Policy, Task
 from esplanade.evaluation.rules import Rules
 from esplanade.evaluation.settings import models_of, parameters_of
 from esplanade.planning import LayeredGrid, Scene
+from esplanade.policies.errors import PolicyError
 
 MARGIN_M: Final = 10.0
 """The ground extends this far beyond the bounds of the recording."""

@@ -19,14 +19,6 @@ if TYPE_CHECKING:  # a policy from outside runs in a process that has nothing of
 Floats = NDArray[np.float64]
 
 
-class PolicyError(Exception):
-    """A policy cannot be used here; the message says why, and what helps."""
-
-
-class PolicyFaultError(Exception):
-    """A policy failed in the middle of an episode, which ends; the message says how."""
-
-
 @dataclass(frozen=True)
 class Person:
     """One person within range of the robot's sensor."""

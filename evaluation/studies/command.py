@@ -8,7 +8,6 @@ from esplanade.commandline.errors import UsageError
 from esplanade.commandline.output import console, made_folder, write_json
 from esplanade.evaluation import plotting
 from esplanade.evaluation.console import named_sources, places_of, rules_of, walk
-from esplanade.evaluation.policy_names import own_options
 from esplanade.evaluation.report import show_faults
 from esplanade.evaluation.rules import Rules
 from esplanade.evaluation.settings import read_changes
@@ -16,6 +15,7 @@ from esplanade.evaluation.studies import report, sensitivity, sensitivity_plot, 
 from esplanade.evaluation.studies.subjects import OUR_ACTOR, Subject, subject_of
 from esplanade.evaluation.studies.variants import Tables, Variant, tables_of, trials_of
 from esplanade.evaluation.trials import Source
+from esplanade.policies.names import own_options
 
 
 def show_sensitivity(options: argparse.Namespace) -> None:

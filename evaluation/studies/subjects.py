@@ -6,11 +6,11 @@ from typing import Any, Final
 
 from esplanade.actors import ActorParameters
 from esplanade.evaluation import settings as of_actor
-from esplanade.evaluation.policy_names import frozen, option_value
 from esplanade.evaluation.rules import Rules
 from esplanade.evaluation.settings import DEFAULTS, SettingError
 from esplanade.evaluation.studies.variants import OURS, Variant
 from esplanade.planning import RuleModel
+from esplanade.policies.names import frozen, option_value
 
 RULES_PREFIX: Final = "rules."
 

@@ -34,6 +34,7 @@ from esplanade.planning.agents._search_kernels import (
     lay_known,
     search,
 )
+from esplanade.planning.agents._steered_kernels import steer
 from esplanade.planning.agents._step_kernels import control_toward, last_check, limited
 from esplanade.planning.agents._task_kernels import SUB, Task, World, metres_left, needed_clearance
 from esplanade.planning.agents.agents import BLOCKED, GIVING_WAY, MOVING, Agents, Decisions
@@ -157,6 +158,7 @@ def decide(
     agents: Agents,
     due: NDArray[np.bool_],
     stalled_s: NDArray[np.float64],
+    steered: NDArray[np.float64],
     tick_s: float,
     first: int,
     last: int,
@@ -168,6 +170,7 @@ def decide(
     Actors that are not `due` (A,) go on along their followed paths; those without one, with one
     that is illegal soon, or inside something, are planned in any tick. Followed paths, seen from
     now, are `world.reservations.paths`. For `stalled_s` (A,) s each has come no nearer to its goal.
+    Those with a velocity in `steered` (A, 2) m/s, not nan, wish for that, and plan nothing.
     The actors are first..last of those listed by their places
     now: neighbours look at the same ground and people, which stay in the cache. The speeds of
     `moves` are parts of each actor's own.
@@ -186,6 +189,9 @@ def decide(
         task = make_task(potentials, agents, rules, a, p["goal_tolerance_m"], tick_s, contested)
         slot = agents.potential_rows[a]
         potential = potentials[slot] if slot >= 0 else no_potential
+        if not np.isnan(steered[a, 0]):
+            steer(world, potential, agents, task, steered[a, 0], steered[a, 1], tick_s, out)
+            continue
         if slot >= 0 and is_cut_off(world.grid, task.body, task.cell, task.x, task.y):
             _lead_out(world, potential, prediction, agents, task, tick_s, listed, out)
             continue

@@ -24,8 +24,9 @@ from esplanade.planning.people._risk_kernels import index_people
 class Zone(NamedTuple):
     """Everything that the ticks of a zone work on, except for people's future.
 
-    `due` (A,) tells whose paths are planned in a tick, and `stalled_s` (A,) s for how long each has
-    come no nearer to its goal; `order` (A,) and `decisions` are written
+    `due` (A,) tells whose paths are planned in a tick, `stalled_s` (A,) s for how long each has
+    come no nearer to its goal, and `steered` (A, 2) m/s which velocities are decided elsewhere, nan
+    for the others; `order` (A,) and `decisions` are written
     anew in every one; `positions` (A, 2) and `cells` (A,) are those after it.
     """
 
@@ -37,6 +38,7 @@ class Zone(NamedTuple):
     agents: Agents
     due: NDArray[np.bool_]
     stalled_s: NDArray[np.float64]
+    steered: NDArray[np.float64]
     order: NDArray[np.int64]
     decisions: Decisions
     positions: NDArray[np.float64]
@@ -107,6 +109,7 @@ def decide_some(
         z.agents,
         z.due,
         z.stalled_s,
+        z.steered,
         tick_s,
         first,
         last,

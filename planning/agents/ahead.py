@@ -100,6 +100,7 @@ def zone() -> kernels.Zone:
         AgentTable(1).agents,
         flags,
         _array(1),
+        places,
         integers,
         decisions,
         places,

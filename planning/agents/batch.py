@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from operator import is_
@@ -160,6 +160,7 @@ class Batch:
             agents,
             np.ones(actors, dtype=np.bool_),
             np.zeros(actors),
+            np.full((actors, 2), np.nan),
             np.empty(actors, dtype=np.int64),
             Decisions(
                 np.empty((actors, slices, 2)),
@@ -184,6 +185,7 @@ class Batch:
         tick_s: float,
         due: NDArray[np.bool_] | None = None,
         stalled_s: NDArray[np.float64] | None = None,
+        steered: Mapping[int, tuple[float, float]] | None = None,
     ) -> tuple[Decisions, NDArray[np.float64], NDArray[np.int64]]:
         """Decide for everyone and take the step.
 
@@ -195,6 +197,7 @@ class Batch:
         tick_s : length of the tick, seconds
         due : bool (A,), whose paths are planned; the others follow those that they have
         stalled_s : float64 (A,), seconds for which each has come no nearer to its goal; None for 0
+        steered : by rows, the velocities of agents that are decided elsewhere, m/s
 
         Returns
         -------
@@ -208,12 +211,23 @@ class Batch:
             self._hand_over(agents, potentials, prediction, tick_s)
         whose: NDArray[np.bool_] | bool = True if due is None else due
         long_s: NDArray[np.float64] | float = 0.0 if stalled_s is None else stalled_s
-        self._zone.due[:], self._zone.stalled_s[:] = whose, long_s
+        self._take_in(whose, long_s, steered or {})
         if not self._plan_and_step(threads, prediction, tick_s):
             self._hand_over(agents, potentials, prediction, tick_s)
-            self._zone.due[:], self._zone.stalled_s[:] = whose, long_s
+            self._take_in(whose, long_s, steered or {})
             self._plan_and_step(threads, prediction, tick_s)
         return self._zone.decisions, self._zone.positions, self._zone.cells
+
+    def _take_in(
+        self,
+        due: NDArray[np.bool_] | bool,
+        stalled_s: NDArray[np.float64] | float,
+        steered: Mapping[int, tuple[float, float]],
+    ) -> None:
+        zone = self._zone
+        zone.due[:], zone.stalled_s[:], zone.steered[:] = due, stalled_s, np.nan
+        for row, velocity in steered.items():
+            zone.steered[row] = velocity
 
     def _plan_and_step(self, threads: int, prediction: Prediction, tick_s: float) -> bool:
         """The stages of a tick; False, and nothing done, if there is too little room."""

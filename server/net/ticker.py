@@ -25,6 +25,7 @@ from esplanade.server.world.inputs import Input, Still
 from esplanade.server.world.zone import Zone
 
 if TYPE_CHECKING:
+    from esplanade.server.driving.drivers import Drivers
     from esplanade.server.recording.keeping import ZoneRecorder
 
 log = structlog.get_logger(__name__)
@@ -60,6 +61,8 @@ class Ticker:
         """Where the ticks go that operators see."""
         self.trajectories: WorldTrajectories | None = None
         """Where the ticks go that are written to a file."""
+        self.drivers: Drivers | None = None
+        """Those who ask policies from outside what their actors do."""
         self.recorder: ZoneRecorder | None = None
         """Where the ticks go from which a replay runs them again."""
         self._stopping = asyncio.Event()
@@ -151,7 +154,11 @@ class Ticker:
             *self._console.drain(),
         ]
         given += self._travellers()
+        if self.drivers is not None:
+            given += self.drivers.drain()
         await self._run(given, self._ground_work.drain())
+        if self.drivers is not None:
+            self.drivers.observe()
         self._schedule.pace.ticked(loop.time(), self._world.tick, self._world.tick_s)
         room_s = self._planning.ticked(self._schedule, loop.time())
         if self.tap is not None and self.tap.traces.ticked(room_s):

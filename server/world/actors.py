@@ -12,7 +12,7 @@ from esplanade.actors.locomotion.footsteps.course import planned_places
 from esplanade.planning import Body
 from esplanade.protocol.looks import NO_LOOK, Look
 from esplanade.server.world.frame import Line
-from esplanade.server.world.inputs import PlanEvery, PotentialDerived
+from esplanade.server.world.inputs import PlanEvery, PotentialDerived, SteerActors
 from esplanade.server.world.routes import Point
 from esplanade.server.world.state import ACTOR, Slots, State
 
@@ -194,13 +194,16 @@ class ActorAvatars:
         self._state.heights[slot] = agents.heights[row]
         self._state.layers[slot] = agents.layers[row]
 
-    def take(self, item: PotentialDerived | PlanEvery) -> None:
-        """Take in by what, or how often, actors are planned from now on."""
+    def take(self, item: PotentialDerived | PlanEvery | SteerActors) -> None:
+        """Take in by what, or how often, actors are planned from now on, or not in this tick."""
         match item:
             case PotentialDerived():
                 self._population.renew_potential(item.potential)
             case PlanEvery():
                 self._population.navigator.planning_interval.ticks = item.ticks
+            case SteerActors():
+                steered = zip(item.actors, item.velocities_mps, strict=True)
+                self._population.steer(dict(steered))
 
     def stand(self, people: ObservedPeople) -> None:
         """A tick in which nothing is planned."""

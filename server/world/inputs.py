@@ -266,6 +266,14 @@ class PlanEvery:
 
 
 @dataclass(frozen=True, slots=True)
+class SteerActors:
+    """In this tick these actors go at these velocities, m/s, which were decided elsewhere."""
+
+    actors: tuple[str, ...]
+    velocities_mps: tuple[tuple[float, float], ...]
+
+
+@dataclass(frozen=True, slots=True)
 class Still:
     """In this tick nobody moves and nothing is planned, since the world is paused.
 
@@ -326,6 +334,7 @@ Input = (
     | ActorCommand
     | ActorsStood
     | PlanEvery
+    | SteerActors
     | Still
     | IdsReserved
 )

@@ -110,6 +110,7 @@ AS_THEY_ARE: Final[dict[str, type[Any]]] = {
     "ids_reserved": live.IdsReserved,
     "actors_stood": live.ActorsStood,
     "plan_every": live.PlanEvery,
+    "steer_actors": live.SteerActors,
     "still": live.Still,
 }
 """Inputs that are plain data as they are, by the kinds that files name."""

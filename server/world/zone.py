@@ -42,6 +42,7 @@ from esplanade.server.world.inputs import (
     PlanEvery,
     PotentialDerived,
     SetParameters,
+    SteerActors,
     SteerMany,
     Still,
 )
@@ -396,6 +397,17 @@ class Zone:
         """The id of an actor's avatar; None if there is no such actor, or not yet."""
         return self._actors.avatar(actor_id)
 
+    def goal_of(self, actor_id: str) -> Point | None:
+        """The goal of an actor's trip; None if it is on none."""
+        table = self._population.table
+        row = table.row(actor_id)
+        on_way = table.trips.outcomes[row] == 0 and not self._population.held(actor_id)
+        return table.wanted(row) if on_way else None
+
+    def waypoint(self, actor_id: str) -> tuple[float, float] | None:
+        """The point that an actor's way leads straight to, metres; None where no way leads."""
+        return self._population.navigator.waypoint(actor_id)
+
     def actor_of(self, avatar_id: int) -> str | None:
         """The id of the actor whose avatar that is; None if it is nobody's."""
         actor_id = self._actors.actor(avatar_id)
@@ -470,6 +482,7 @@ class Zone:
     def _begin_frame(self) -> None:
         self._persons.begin_frame()
         self._stands = self._still = False
+        self._population.steer(None)
         self._commands.begin()
 
     def _take(self, item: Input) -> None:
@@ -483,7 +496,7 @@ class Zone:
                 self.doors.want(item.name, item.is_open)
             case DoorDerived():
                 self._moved_doors |= self.doors.take(item.change)
-            case PotentialDerived() | PlanEvery():
+            case PotentialDerived() | PlanEvery() | SteerActors():
                 self._actors.take(item)
             case ActorsDerived():
                 self._persons.gone(self._commands.take_derived(item, self.tick))

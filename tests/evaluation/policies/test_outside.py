@@ -11,10 +11,11 @@ import numpy as np
 import pytest
 
 from esplanade.evaluation.policies import make_policy
-from esplanade.evaluation.policies.outside import outside
-from esplanade.evaluation.policies.policy import Policy, PolicyError
-from esplanade.evaluation.policy_names import digest_of_policy, is_outside, label_of
+from esplanade.evaluation.policies.policy import Policy
 from esplanade.evaluation.simulation import EpisodeResult, run_episode
+from esplanade.policies import asked
+from esplanade.policies.errors import PolicyError
+from esplanade.policies.names import digest_of_policy, is_outside, label_of
 from esplanade.recordings import Obstacles
 from tests.evaluation.worlds import RULES, environment, trip, walk
 from tests.patience import PATIENCE_S
@@ -179,8 +180,8 @@ def test_a_policy_that_fails_ends_its_episode_and_no_other(made: Any, deed: str,
 
 
 def test_a_policy_that_never_answers_fails(made: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(asked, "DECIDES_WITHIN_S", 0.5)
     policy = made(FAILS.format(name="Mine", deed="time.sleep(3600)").replace("0.45", "-1"))
-    monkeypatch.setattr(outside, "DECIDES_WITHIN_S", 0.5)
     assert run(policy).score.fault == "at 0.0 s: it did not answer within 0.5 s"
 
 

@@ -11,13 +11,14 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import IO, Any, Final
 
-from esplanade.evaluation.policies.outside.messages import (
+from esplanade.policies.messages import (
+    DECISIONS,
     line_of,
     message_of,
     observation_of,
     task_of,
 )
-from esplanade.evaluation.policy_names import maker_of
+from esplanade.policies.names import maker_of
 
 _HERE: Final = str(Path(__file__).parent)
 
@@ -33,14 +34,19 @@ class Host:
         match message["ask"]:
             case "load":
                 self._policy = maker_of(message["policy"])(**message["options"])
-                if not callable(getattr(self._policy, "velocity", None)):
+                decides = [n for n in DECISIONS if callable(getattr(self._policy, n, None))]
+                if not decides:
                     raise TypeError("it has no method velocity(observation)")
+                return {"ready": True, "decides": decides}
             case "reset":
                 if hasattr(self._policy, "reset"):
                     self._policy.reset(task_of(message["task"]))
             case "velocity":
                 seen = observation_of(message["observation"])
                 return {"velocity": _listed(self._policy.velocity(seen))}
+            case "goal":
+                seen = observation_of(message["observation"])
+                return {"goal": _listed(self._policy.goal(seen))}
             case "explain":
                 told = self._policy.explain() if hasattr(self._policy, "explain") else None
                 return {name: _listed(value) for name, value in (told or {}).items()}

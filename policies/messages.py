@@ -2,9 +2,11 @@
 
 The evaluation asks, the policy answers each question once:
 
-    {"ask": "load", "policy": "my_policy.py:MyPolicy", "options": {}}  -> {"ready": true}
+    {"ask": "load", "policy": "my_policy.py:MyPolicy", "options": {}}
+                                          -> {"ready": true, "decides": ["velocity"]}
     {"ask": "reset", "task": {...}}                                    -> {"ready": true}
     {"ask": "velocity", "observation": {...}}                          -> {"velocity": [vx, vy]}
+    {"ask": "goal", "observation": {...}}               -> {"goal": [x, y]}, or with z, or null
     {"ask": "explain"}                     -> {"path": [[x, y], ..], "circles": [[x, y, r], ..]}
 
 Instead of each answer there may be {"error": "why"}. The fields of a task and of an observation
@@ -18,8 +20,10 @@ from typing import Any, Final
 
 import numpy as np
 
-from esplanade.evaluation.policies.outside.interface import Floats, Observation, Person, Task
+from esplanade.policies.interface import Floats, Observation, Person, Task
 
+DECISIONS: Final = ("velocity", "goal")
+"""What a policy may decide; one that does not say decides velocities."""
 LONGEST_ANSWER: Final = 1 << 20
 """Bytes of a line. A longer answer is a fault."""
 

@@ -74,3 +74,14 @@ class Velocities(Protocol):
 
     def velocity(self, observation: Observation) -> tuple[float, float]:
         """The velocity (2,) at which the robot wants to walk now."""
+
+
+class Goals(Protocol):
+    """The method of a policy that decides where a live actor goes, instead of how, or beside it."""
+
+    def goal(self, observation: Observation) -> tuple[float, ...] | None:
+        """The next goal, x and y, or x, y and the height of the floor; None to be asked later.
+
+        It is asked when the actor has no trip, or its trip has ended; `observation.goal` is then
+        where the actor stands.
+        """

@@ -18,15 +18,6 @@ GROUP: Final = "esplanade.policies"
 """The group of entry points by which an installed package offers policies."""
 
 
-WITH_OPTIONS: Final = ("orca",)
-"""Those of our policies that take options as policies from outside do."""
-
-
-def has_options(name: str) -> bool:
-    """Whether a policy takes options of the command line."""
-    return name in WITH_OPTIONS or is_outside(name)
-
-
 def is_outside(name: str) -> bool:
     """Whether a name is that of a policy from outside, such as `my_policy.py:MyPolicy`."""
     return ":" in name or name in {point.name for point in entry_points(group=GROUP)}

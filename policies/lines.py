@@ -12,15 +12,15 @@ from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from typing import Any, Final
 
-from esplanade.evaluation.policies.outside.messages import (
+from esplanade.policies.errors import PolicyFaultError
+from esplanade.policies.messages import (
     LONGEST_ANSWER,
     MessageError,
     line_of,
     message_of,
 )
-from esplanade.evaluation.policies.policy import PolicyFaultError
 
-_HOST: Final = "esplanade.evaluation.policies.outside.host"
+_HOST: Final = "esplanade.policies.host"
 
 
 class PolicyLine(ABC):
@@ -56,8 +56,12 @@ class PolicyLine(ABC):
         return found
 
     @abstractmethod
+    def end(self) -> None:
+        """End the other end, so that whoever waits for an answer learns of it."""
+
+    @abstractmethod
     def close(self) -> None:
-        """End the line. It is not used afterwards."""
+        """End the line. It is not used afterwards, and nobody may wait for an answer."""
 
     @abstractmethod
     def _ended(self) -> str:
@@ -96,12 +100,16 @@ class PolicyProcess(PolicyLine):
         os.close(answers)
         super().__init__(self._asks, self._answered)
 
+    def end(self) -> None:
+        """End the process, with all that it has started."""
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(self._process.pid, signal.SIGKILL)
+
     def close(self) -> None:
         """End the process, with all that it has started."""
         os.close(self._asks)
         os.close(self._answered)
-        with contextlib.suppress(ProcessLookupError):
-            os.killpg(self._process.pid, signal.SIGKILL)
+        self.end()
         self._process.wait()
 
     def _ended(self) -> str:
@@ -125,6 +133,11 @@ class PolicySocket(PolicyLine):
         self._socket = socket.create_connection((host, port), within_s)
         self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         super().__init__(self._socket.fileno(), self._socket.fileno())
+
+    def end(self) -> None:
+        """Let nobody send any more."""
+        with contextlib.suppress(OSError):
+            self._socket.shutdown(socket.SHUT_RDWR)
 
     def close(self) -> None:
         """Hang up."""

@@ -1,0 +1,1 @@
+"""Policies from outside drive actors of a served zone, beside those that plan by themselves."""
