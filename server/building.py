@@ -10,6 +10,7 @@ from esplanade.planning import LayeredGrid
 from esplanade.planning.routes.storey_heights import reached_from, storeys_of
 from esplanade.policies.names import label_of
 from esplanade.server.checkpoint.parts import with_faults_told
+from esplanade.server.driving.settings import USUAL_COUNT
 from esplanade.server.loading import LoadedScene, LoadingError
 from esplanade.server.populating import default_roster, names_of, populate_from, with_driven
 from esplanade.server.recovery import Recovery
@@ -48,7 +49,8 @@ def _build_warm(
         grid = LayeredGrid.from_scene(loaded.scene)
         roster = loaded.roster or default_roster(loaded.scene, settings.actors, seed)
         if settings.policy is not None:
-            roster = with_driven(roster, label_of(settings.policy), settings.policy_actors)
+            count = USUAL_COUNT if settings.policy_actors is None else settings.policy_actors
+            roster = with_driven(roster, label_of(settings.policy), count)
         names = names_of(roster)
         saved = None if recovery is None else recovery.zone
         if saved is not None:

@@ -41,7 +41,7 @@ class ServerSettings(BaseSettings):
     tick_rate: int = _field("tick_rate")
     planning_interval: int | None = _field("planning_interval")
     policy: str | None = _field("policy")
-    policy_actors: int = _field("policy_actors")
+    policy_actors: int | None = _field("policy_actors")
     policy_options: str | None = _field("policy_options")
 
     person_radius_m: float = _field("person_radius_m")

@@ -10,6 +10,8 @@ from esplanade.policies.names import address_of, is_outside
 
 MOST_DRIVEN: Final = 16
 """Each has a process, or a connection, of its own."""
+USUAL_COUNT: Final = 1
+"""Actors that a policy drives beside those of a roster, if nothing is said."""
 DRIVEN_TAG: Final = "policy"
 """The group of the actors that a policy drives."""
 
@@ -21,9 +23,8 @@ DRIVING: Final = {
     ),
     "policy_actors": Setting(
         "actors beside the others that it drives; it drives those of a roster with the tag "
-        f"{DRIVEN_TAG} too",
+        f"{DRIVEN_TAG} too; without it, {USUAL_COUNT}",
         Whole(0, MOST_DRIVEN),
-        1,
     ),
     "policy_options": Setting("keywords for it, a JSON object", Text()),
 }
