@@ -8,9 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from esplanade.server.replay.replayed_zone import ReplayedZone
-from esplanade.server.whatif.changes import Changes
+from esplanade.server.whatif.changes import Changes, People
 from esplanade.server.whatif.encounters import Encounters
 from esplanade.server.whatif.fork import Fork
+from esplanade.server.whatif.reacting_walkers import ReactingWalkers
 from esplanade.server.whatif.stretch import Stretch
 from esplanade.server.whatif.trip_times import TripTimes
 from esplanade.server.whatif.walkers import RecordedWalkers, Walkers
@@ -28,7 +29,7 @@ class Plan:
     """What is run: a change or none, among people of a kind, by a seed or with recorded chance."""
 
     changes: Changes
-    people: str
+    people: People
     seed: int | None
 
 
@@ -60,7 +61,9 @@ def run(
     WhatIfError
         The changes cannot be made.
     """
-    walkers = RecordedWalkers(stretch)
+    walkers: Walkers = RecordedWalkers(stretch)
+    if plan.people == "reacting":
+        walkers = ReactingWalkers(stretch, replayed.zone, plan.seed)
     fork = Fork(replayed, stretch, plan.changes, walkers, plan.seed)
     zone = fork.zone
     encounters, trips = Encounters(zone), TripTimes(zone)

@@ -2,41 +2,19 @@
 
 import sys
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from esplanade.server.recording.head import Head
 from esplanade.server.recording.reader import RecordedTick, Recording
 from esplanade.server.replay.replayed_zone import ReplayedZone
 from esplanade.server.whatif.errors import WhatIfError
+from esplanade.server.whatif.walked import Walked, Ways
 from esplanade.server.world.frame import Frame
-from esplanade.server.world.state import PERSON, State
+from esplanade.server.world.state import ACTOR, PERSON
 from esplanade.server.world.zone import Zone
-
-Floats = NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class Walked:
-    """The places (T, 3), metres, of one person, from a tick on, one each tick."""
-
-    first_tick: int
-    places: Floats
-
-    @property
-    def last_tick(self) -> int:
-        """The tick of the last place."""
-        return self.first_tick + len(self.places) - 1
-
-    def at(self, tick: int) -> tuple[float, float, float] | None:
-        """The place in a tick, if the person was there."""
-        if not self.first_tick <= tick <= self.last_tick:
-            return None
-        x, y, z = self.places[tick - self.first_tick].tolist()
-        return x, y, z
 
 
 @dataclass(frozen=True)
@@ -53,6 +31,10 @@ class Stretch:
     """Where people were, by their ids, the first tick included."""
     joined: dict[tuple[int, int], int]
     """The ids that newcomers got, by tick and ticket."""
+    actors_walked: dict[str, Walked]
+    """Where actors were a tick before each one, by their ids, at the heights of the tick itself."""
+    actors_radii_m: dict[str, float]
+    """The radii that actors had at last."""
 
     @property
     def last_tick(self) -> int:
@@ -65,25 +47,25 @@ class Stretch:
         return len(self.ticks) * self.head.built.tick_s
 
 
-@dataclass
 class _Watched:
     """Takes in ticks of the world as it was."""
 
-    places: dict[int, list[Floats]] = field(default_factory=dict)
-    first: dict[int, int] = field(default_factory=dict)
-    joined: dict[tuple[int, int], int] = field(default_factory=dict)
+    def __init__(self) -> None:
+        self.people = Ways[int]()
+        self.actors = Ways[str]()
+        self.joined: dict[tuple[int, int], int] = {}
+        self.radii_m: dict[str, float] = {}
 
-    def take(self, tick: int, state: State, frame: Frame | None) -> None:
-        people = state.of_kind(PERSON)
+    def take(self, zone: Zone, frame: Frame | None) -> None:
+        tick, state = zone.tick, zone.state
+        people, actors = state.of_kind(PERSON), state.of_kind(ACTOR)
         places = np.column_stack([state.positions[people], state.heights[people]])
-        for person, place in zip(state.ids[people].tolist(), places, strict=True):
-            self.first.setdefault(person, tick)
-            self.places.setdefault(person, []).append(place)
+        self.people.take(tick, state.ids[people].tolist(), places)
+        ids = [str(zone.actor_of(avatar)) for avatar in state.ids[actors].tolist()]
+        self.actors.take(tick, ids, np.column_stack([state.before[actors], state.heights[actors]]))
+        self.radii_m |= zip(ids, state.radii[actors].tolist(), strict=True)
         if frame is not None:
             self.joined |= {(tick, ticket): person for ticket, person in frame.joined}
-
-    def walked(self) -> dict[int, Walked]:
-        return {who: Walked(self.first[who], np.array(at)) for who, at in self.places.items()}
 
 
 def read_stretch(
@@ -115,23 +97,30 @@ def read_stretch(
             if second.last_tick >= from_tick:
                 state = second.state
                 check(replayed.zone)
-                watched.take(second.last_tick, replayed.zone.state, None)
+                watched.take(replayed.zone, None)
         for tick in second.ticks:
             if tick.tick > to_tick:
                 break
             frame = replayed.step(tick)
             if state is not None:
                 ticks.append(tick)
-                watched.take(tick.tick, replayed.zone.state, frame)
+                watched.take(replayed.zone, frame)
             elif tick.tick == from_tick:
                 state = replayed.zone.save_exactly()
                 check(replayed.zone)
-                watched.take(tick.tick, replayed.zone.state, None)
+                watched.take(replayed.zone, None)
         if second.last_tick > to_tick:
             break
         report(recording.share_read)
     if state is None or not ticks:
         raise WhatIfError(f"{recording.path}: there is no tick between --from and --to")
     return Stretch(
-        recording.head, state, ticks[0].tick - 1, ticks, watched.walked(), watched.joined
+        recording.head,
+        state,
+        ticks[0].tick - 1,
+        ticks,
+        watched.people.walked(),
+        watched.joined,
+        watched.actors.walked(),
+        watched.radii_m,
     )

@@ -14,8 +14,8 @@ PEOPLE: Final = {
     "recorded": "People are where they were recorded, whatever actors do: they do not answer to "
     "what is changed. So figures tell what would have happened to people who evade nobody anew.",
     "reacting": "People walk toward where they were recorded, and evade actors by a social force "
-    "model as far as these are elsewhere than when they were recorded. They do not choose other "
-    "ways or goals, and who goes to another floor begins there at the recorded place.",
+    "model as far as these are in the way more than when they were recorded. They choose no other "
+    "ways, goals or times: a door in their way holds them up.",
 }
 
 

@@ -82,6 +82,20 @@ def test_seeds_give_intervals_and_one_page(
     assert "esplanade replay" in text
 
 
+def test_people_who_react_are_told_of_with_what_is_imposed_on_them(
+    recording: Path, roster: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "figures.json"
+    options = ("--roster", str(roster), "--people", "reacting", "--json", str(out))
+    assert replay(recording, *options) == 0
+    told = capsys.readouterr().out
+    assert "by a social force model" in told
+    figures = {each["name"]: each for each in json.loads(out.read_text())["figures"]}
+    for name in ("displacement_m", "delay_s"):
+        assert figures[name]["recorded"] == 0.0 <= figures[name]["changed"]
+    assert figures["displacement_m"]["changed"] > 0.0
+
+
 def test_the_changed_run_is_written(recording: Path, roster: Path, tmp_path: Path) -> None:
     out = tmp_path / "walks.csv"
     options = ("--from", "2", "--roster", str(roster), "--trajectories", str(out))

@@ -14,7 +14,7 @@ from esplanade.server.whatif.changes import Changes
 from esplanade.server.whatif.errors import WhatIfError
 from esplanade.server.whatif.fork import Fork
 from esplanade.server.whatif.stretch import Stretch, read_stretch
-from esplanade.server.whatif.walkers import RecordedWalkers
+from esplanade.server.whatif.walkers import RecordedWalkers, Walkers
 from esplanade.server.world.state import ACTOR, PERSON
 from tests.server.populated import spec
 from tests.server.recording.recorded import record
@@ -75,9 +75,13 @@ def seen(replayed: ReplayedZone) -> dict[str, Any]:
 
 
 def run(
-    replayed: ReplayedZone, stretch: Stretch, changes: Changes, seed: int | None = None
+    replayed: ReplayedZone,
+    stretch: Stretch,
+    changes: Changes,
+    seed: int | None = None,
+    walkers: Walkers | None = None,
 ) -> list[dict[str, Any]]:
-    fork = Fork(replayed, stretch, changes, RecordedWalkers(stretch), seed)
+    fork = Fork(replayed, stretch, changes, walkers or RecordedWalkers(stretch), seed)
     return [seen(replayed) for _ in fork.ticks()]
 
 
