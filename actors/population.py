@@ -175,6 +175,12 @@ class Population:
         """The chance that an actor of this id has, from its beginning."""
         return np.random.default_rng([self._seed, *str(actor_id).encode()])
 
+    def draw_anew(self, seed: int) -> None:
+        """Let the behaviours of all actors, and of those who come in, draw by another seed."""
+        self._seed = seed
+        self._generators = {each: self.generator(each) for each in self._generators}
+        self._minds.change_all()
+
     def remove(self, actor_id: Hashable) -> None:
         """Take an actor out; KeyError when there is none of that id."""
         self.remove_many([actor_id])

@@ -229,16 +229,30 @@ class PotentialPool:
                 del self._slots[key], self._outdated[slot]
                 self._keys[slot] = None
                 self._provisional.discard(slot)
-        if not self._outdated:
+        goals = self.outdated_goals()
+        if not goals:
             return None
-        slot = min(
+        return partial(self._renewed, self._grid.fork(), goals[0], self._changes, self._doors())
+
+    def outdated_goals(self) -> list[GoalKey | DetourKey]:
+        """The goals of potentials that are out of date, in the order in which they are derived.
+
+        Those of bodies that the grid has forgotten are left out, unless somebody uses them.
+        """
+        order = sorted(
             self._outdated,
             key=lambda slot: (not self._users[slot], slot not in self._provisional),
         )
-        key = self._keys[slot]
-        if key is None:
-            return None
-        return partial(self._renewed, self._grid.fork(), key, self._changes, self._doors())
+        keys = [(slot, self._keys[slot]) for slot in order]
+        return [
+            key
+            for slot, key in keys
+            if key is not None and (self._users[slot] or self._grid.knows(key[3]))
+        ]
+
+    def derived_now(self, goal: GoalKey | DetourKey) -> RenewedPotential:
+        """Derive on the ground as it is."""
+        return self.derived_again(goal, self._changes)
 
     def derived_again(self, goal: GoalKey | DetourKey, changes: int) -> RenewedPotential:
         """Derive on the ground as it is what was derived after so many changes of it."""

@@ -9,6 +9,7 @@ from esplanade.recordings.writing import WritingError
 from esplanade.server import logs
 from esplanade.server.offline.settings import OfflineSettings
 from esplanade.server.recording.errors import ZoneRecordingError
+from esplanade.server.replay.options import asks_what_if
 
 
 def run(options: Namespace) -> int:
@@ -27,6 +28,10 @@ def run(options: Namespace) -> int:
                     console().print(running.info(recording))
                     return exit_codes.OK
                 running.check_program(recording, options)
+                if asks_what_if(options):
+                    from esplanade.server.whatif.command import what_if  # noqa: PLC0415
+
+                    return what_if(recording, options)
                 return running.replay(recording, options)
         except ZoneRecordingError as error:
             raise CommandError(str(error)) from None

@@ -5,7 +5,7 @@ from typing import Final
 
 from esplanade.commandline.errors import UsageError
 from esplanade.commandline.parser import Parser
-from esplanade.commandline.readers import InputFile, Moment, Number, OutputFile
+from esplanade.commandline.readers import InputFile, Moment, Number, OutputFile, Whole
 from esplanade.commandline.trajectory_files import check_suffix
 
 EPILOG: Final = """\
@@ -15,6 +15,8 @@ examples:
   esplanade replay kept/gallery.mcap --trajectories walks.csv --hz 10
   esplanade replay kept/gallery.mcap --from 00:12:30 --to 00:13:00 --trajectories walks.csv
   esplanade replay kept/gallery.mcap --info
+  esplanade replay kept/gallery.mcap --set risk_weight=20 --seeds 20 --report out.html
+  esplanade replay kept/gallery.mcap --from 120 --to 240 --door 'Archive door=closed'
 
 a recording has all inputs of a zone, so that it runs again bit for bit: with the same program, and
 on the same kind of processor. --verify compares it with digests that stand in it, each second. A
@@ -22,8 +24,12 @@ recording of another program is refused; --other-program runs it all the same, a
 says where it goes another way. A server that was killed leaves a file that is read up to the last
 whole second.
 
+with --set, --roster or --door the stretch is run again as another world and beside it as recorded,
+and what became of people and actors is compared. With --seeds, actors' behaviours draw anew in each
+run, so that there are intervals.
+
 exit code: 0 done, and with --verify all is equal, 1 something differs, or the file is damaged, 2
-wrong usage, or a recording of another program, 130 Ctrl-C
+wrong usage, a moment or value that cannot be, or a recording of another program, 130 Ctrl-C
 """
 
 
@@ -73,7 +79,63 @@ def parser() -> Parser:
         action="store_true",
         help="run a recording that another program has made: it may go another way",
     )
+    _add_what_if(made)
     return made
+
+
+def _add_what_if(made: Parser) -> None:
+    group = made.add_argument_group("what if something is changed")
+    group.add_argument(
+        "--set",
+        metavar="NAME=VALUE",
+        action="append",
+        default=[],
+        help="a parameter of all actors, such as risk_weight=20; may be given several times",
+    )
+    group.add_argument(
+        "--roster",
+        metavar="FILE",
+        type=InputFile(),
+        help="the actors of this roster walk instead of those recorded",
+    )
+    group.add_argument(
+        "--door",
+        metavar="NAME=open|closed",
+        action="append",
+        default=[],
+        help="a door that stays so from the beginning; may be given several times",
+    )
+    group.add_argument(
+        "--people",
+        choices=("recorded", "reacting"),
+        help="recorded: people are where they were, whatever actors do; reacting: they evade "
+        "actors by a social force model [default: recorded]",
+    )
+    group.add_argument(
+        "--seeds",
+        metavar="N",
+        type=Whole(1, 1000),
+        help="run it N times with and N times without the change [default: once, with what chance "
+        "had drawn]",
+    )
+    group.add_argument(
+        "--processes",
+        metavar="N",
+        type=Whole(1, 256),
+        help="processes that share the runs of --seeds [default: one for each core]",
+    )
+    group.add_argument(
+        "--report",
+        metavar="FILE",
+        type=OutputFile(".html"),
+        help="write one page with table, strip of differences and plots there",
+    )
+    group.add_argument("--json", metavar="FILE", type=OutputFile(), help="write the figures there")
+
+
+def asks_what_if(options: Namespace) -> bool:
+    """Whether something is to be changed."""
+    return bool(options.set or options.roster is not None or options.door)
 
 
 def check(options: Namespace) -> None:
@@ -92,8 +154,28 @@ def check(options: Namespace) -> None:
         raise UsageError("--info: it tells of the whole recording; leave out --from and --to")
     if options.info and (options.verify or options.trajectories):
         raise UsageError("--info: it runs nothing, so that nothing can be verified or written")
+    _check_what_if(options)
     if options.trajectories is not None:
         try:
             check_suffix(options.trajectories)
         except ValueError as error:
             raise UsageError(f"--trajectories: {error}") from None
+
+
+def _check_what_if(options: Namespace) -> None:
+    if not asks_what_if(options):
+        for name in ("people", "seeds", "processes", "report", "json"):
+            if getattr(options, name) is not None:
+                raise UsageError(
+                    f"--{name}: nothing is changed; give --set, --roster or --door as well"
+                )
+        options.people = "recorded"
+        return
+    options.people = options.people or "recorded"
+    if options.verify or options.info:
+        name = "verify" if options.verify else "info"
+        raise UsageError(f"--{name}: it is of the recording as it is; leave out what is changed")
+    if options.seeds is None and options.processes is not None:
+        raise UsageError("--processes: it belongs to --seeds, but none are given")
+    if options.seeds is not None and options.trajectories is not None:
+        raise UsageError("--trajectories: they are of one run; leave out --seeds")

@@ -12,9 +12,9 @@ from esplanade.commandline import exit_codes
 from esplanade.commandline.errors import UsageError
 from esplanade.commandline.output import console
 from esplanade.commandline.progress import progress
-from esplanade.server.recording.errors import ZoneRecordingError
 from esplanade.server.recording.head import MACHINE, PROGRAM, differing
 from esplanade.server.recording.reader import Recording
+from esplanade.server.replay.bounds import bounds, too_late
 from esplanade.server.replay.replayed_zone import ReplayedZone
 from esplanade.server.replay.verifying import Verifier
 from esplanade.server.replay.written_trajectories import WrittenTrajectories
@@ -61,6 +61,8 @@ def replay(recording: Recording, options: Namespace) -> int:
         The recording is damaged.
     WritingError
         The file of trajectories cannot be written.
+    UsageError
+        It is to begin after its end.
     """
     done = _Run()
     with ExitStack() as stack:
@@ -68,7 +70,7 @@ def replay(recording: Recording, options: Namespace) -> int:
         verifier = Verifier(replayed.zone) if options.verify else None
         shown = stack.enter_context(progress(share=True, time_left=True))
         task = shown.add_task("verifying" if verifier else "replaying", total=1.0)
-        first, last = _bounds(recording, options)
+        first, last = bounds(recording, options)
         written = None
         if options.trajectories is not None:
             written = stack.enter_context(WrittenTrajectories(recording, replayed, options))
@@ -96,27 +98,8 @@ def replay(recording: Recording, options: Namespace) -> int:
             shown.update(task, completed=recording.share_read)
         done.took_s = time.perf_counter() - began_s
         if options.from_s is not None and done.last_tick <= first:
-            raise ZoneRecordingError(_too_late(recording, options, done.last_tick))
+            raise too_late(recording, options, done.last_tick)
     return _tell(recording, options, done, verifier)
-
-
-def _bounds(recording: Recording, options: Namespace) -> tuple[int, int]:
-    """The ticks after which the part of a recording begins, and with which it ends."""
-    tick_s, first = recording.head.built.tick_s, recording.first_tick
-    begin = first + round((options.from_s or 0.0) / tick_s)
-    end = sys.maxsize if options.to_s is None else first + round(options.to_s / tick_s)
-    if (
-        options.from_s is not None
-        and recording.last_tick is not None
-        and begin >= recording.last_tick
-    ):
-        raise ZoneRecordingError(_too_late(recording, options, recording.last_tick))
-    return begin, end
-
-
-def _too_late(recording: Recording, options: Namespace, last_tick: int) -> str:
-    length_s = (last_tick - recording.first_tick) * recording.head.built.tick_s
-    return f"{options.file}: --from {options.from_s:g} s: the recording has {length_s:g} s"
 
 
 def _tell(recording: Recording, options: Namespace, done: _Run, verifier: Verifier | None) -> int:

@@ -73,6 +73,15 @@ def _head(recording: Recording, zone: Zone, options: Namespace) -> Head:
         "recording sha256": digest_if_there(options.file),
         "seed": str(recording.head.built.seed),
         "ticks a second": f"{1.0 / zone.tick_s:.10g}",
+        **_changed(options),
         "time": f"seconds of the world; frame k is at k / {fps:.10g} s",
     }
     return Head(told, fps, zone.scene.bounds, walkable_wkt(zone.scene))
+
+
+def _changed(options: Namespace) -> dict[str, str]:
+    """What was changed, if anything was, in the words of the command line."""
+    given = [*options.set, *options.door]
+    if options.roster is not None:
+        given.append(f"the roster {options.roster.name}")
+    return {"changed": ", ".join(given)} if given else {}

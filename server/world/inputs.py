@@ -92,6 +92,17 @@ class Follow:
 
 
 @dataclass(frozen=True, slots=True)
+class PeoplePlaced:
+    """People, all different, are at these places at the end of this tick.
+
+    They mean to go nowhere then. Replays in which people do not walk by themselves have it.
+    """
+
+    ids: tuple[int, ...]
+    places: tuple[Point, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class MoveDoor:
     """Open or close a door, once nobody stands in its way."""
 
@@ -328,6 +339,7 @@ DerivedInput = DoorDerived | PotentialDerived | ActorsDerived
 Input = (
     Join
     | SteerMany
+    | PeoplePlaced
     | MoveDoor
     | OfPerson
     | DerivedInput

@@ -46,6 +46,8 @@ class People:
         self._blocked = np.zeros(state.capacity, dtype=np.int64)
         self._routes: dict[int, deque[Point]] = {}
         self._route_ahead = RouteAhead(state.capacity)
+        self._put: tuple[Slots, Floats] | None = None
+        """Those who are put somewhere in this tick, and their places."""
 
     def stop(self, slot: int) -> None:
         """Stand still, without any intention."""
@@ -80,6 +82,12 @@ class People:
             self._blocked[slot] = 0
             self._targets[slot] = wish.route[0][:2]
             self._route_ahead.set(slot, wish.route)
+
+    def put(self, slots: Slots, places: Floats) -> None:
+        """Stand at places (N, 3) at the end of this tick, without any intention."""
+        for slot in slots.tolist():
+            self.stop(slot)
+        self._put = slots, places
 
     def save(self) -> dict[str, Any]:
         """The intentions of everyone, as plain data and copies of arrays."""
@@ -133,6 +141,26 @@ class People:
 
     def move(self) -> None:
         """Move everyone by one tick."""
+        self._walk()
+        if self._put is not None:
+            self._be_put(*self._put)
+            self._put = None
+
+    def _be_put(self, slots: Slots, places: Floats) -> None:
+        """Let people be at places (N, 3), facing the way that leads there."""
+        state = self._state
+        moved_m = places[:, :2] - state.positions[slots]
+        state.positions[slots], state.heights[slots] = places[:, :2], places[:, 2]
+        cells = self._grid.on_ground(state.positions[slots], state.heights[slots])[1]
+        state.layers[slots] = self._grid.layers_of(cells)
+        distances_m = np.hypot(moved_m[:, 0], moved_m[:, 1])
+        state.speeds[slots] = distances_m / self._tick_s
+        turned = distances_m > 0.0
+        state.headings[slots[turned]] = np.arctan2(moved_m[turned, 1], moved_m[turned, 0])
+        self._look_ahead(slots, moved_m, cells)
+
+    def _walk(self) -> None:
+        """Move everyone by what they mean to do."""
         state = self._state
         self._head_for_targets()
         people = state.of_kind(PERSON)

@@ -3,6 +3,8 @@
 from collections.abc import Collection, Mapping
 from itertools import compress
 
+import numpy as np
+
 from esplanade.planning import LayeredGrid
 from esplanade.server.world.frame import Line, Tickets
 from esplanade.server.world.inputs import (
@@ -13,6 +15,7 @@ from esplanade.server.world.inputs import (
     Leave,
     MakeGesture,
     OfPerson,
+    PeoplePlaced,
     Say,
     SetAway,
     SetLook,
@@ -125,12 +128,24 @@ class PersonInputs:
             case SetLook():
                 self._looks.wear(slot, item.look)
 
-    def steer(self, wish: SteerMany) -> None:
-        """Take in which ways people want to walk; those who are gone are left out."""
+    def take_many(self, item: SteerMany | PeoplePlaced) -> None:
+        """Take in what becomes of many people; those who are gone are left out."""
+        if isinstance(item, SteerMany):
+            self._steer(item)
+        else:
+            self._put(item)
+
+    def _steer(self, wish: SteerMany) -> None:
         slots = self._state.slots_of(wish.ids)
         here = slots >= 0
         self._people.steer_many(slots[here], wish.directions_rad[here], wish.speeds_mps[here])
         self.acks.update(zip(compress(wish.ids, here), compress(wish.seqs, here), strict=True))
+
+    def _put(self, placed: PeoplePlaced) -> None:
+        slots = self._state.slots_of(placed.ids)
+        here = slots >= 0
+        places = np.array(placed.places, dtype=np.float64).reshape(-1, 3)
+        self._people.put(slots[here], places[here])
 
     def gone(self, avatars: list[int]) -> None:
         """Actors' avatars have left the world: nobody watches them any more."""

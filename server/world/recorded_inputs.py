@@ -95,6 +95,7 @@ AS_THEY_ARE: Final[dict[str, type[Any]]] = {
     "stand": live.Stand,
     "steer": live.Steer,
     "follow": live.Follow,
+    "people_placed": live.PeoplePlaced,
     "move_door": live.MoveDoor,
     "say": live.Say,
     "watch": live.Watch,

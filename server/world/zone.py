@@ -39,6 +39,7 @@ from esplanade.server.world.inputs import (
     Join,
     MoveDoor,
     OfPerson,
+    PeoplePlaced,
     PlanEvery,
     PotentialDerived,
     SetParameters,
@@ -354,6 +355,14 @@ class Zone:
         """
         return self._population.outdated_potential()
 
+    def outdated_goals(self) -> list[GoalKey | DetourKey]:
+        """The goals whose potentials are out of date, in the order in which they are derived."""
+        return self._population.navigator.potentials.outdated_goals()
+
+    def derived_now(self, goal: GoalKey | DetourKey) -> RenewedPotential:
+        """The potential of a goal on the ground as it is; heavy."""
+        return self._population.navigator.potentials.derived_now(goal)
+
     def derived_again(self, goal: GoalKey | DetourKey, changes: int) -> RenewedPotential:
         """The potential of a goal on the ground as it is, for a replay; heavy."""
         return self._population.navigator.potentials.derived_again(goal, changes)
@@ -364,6 +373,11 @@ class Zone:
         Ask between two ticks, and let no door move until the result was an input.
         """
         return self._commands.work()
+
+    @property
+    def longest_waiting(self) -> int | None:
+        """The number of the command for which `actor_work` derives something; None for none."""
+        return next((each.command for each in self._commands.those_waiting), None)
 
     @property
     def commands_waiting(self) -> int:
@@ -490,8 +504,8 @@ class Zone:
             case Join():
                 self._persons.join(item)
                 self.people_seen += 1
-            case SteerMany():
-                self._persons.steer(item)
+            case SteerMany() | PeoplePlaced():
+                self._persons.take_many(item)
             case MoveDoor():
                 self.doors.want(item.name, item.is_open)
             case DoorDerived():

@@ -112,7 +112,7 @@ def test_a_moment_after_the_end_is_refused(
     path = tmp_path / "hall.mcap"
     data = recording.read_bytes()
     path.write_bytes(data[: chunk_at(recording, -1) + 20] if is_cut else data)
-    assert replay(path, "--from", "1:00:00") == 1
+    assert replay(path, "--from", "1:00:00") == 2
     length = "11.95" if is_cut else "12.45"
     assert f"--from 3600 s: the recording has {length} s" in capsys.readouterr().err
 

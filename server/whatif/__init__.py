@@ -1,0 +1,1 @@
+"""Recorded stretches run again with something changed, and what came of it."""
