@@ -11,6 +11,7 @@ from esplanade.commandline.progress import progress
 from esplanade.evaluation import forecast_report, plotting, report, report_files, tables
 from esplanade.evaluation.console import named_sources, rules_of, walk
 from esplanade.evaluation.dask_cluster import ClusterError
+from esplanade.evaluation.guidelines import MEASURES
 from esplanade.evaluation.policies import PolicyError
 from esplanade.evaluation.runner import TrialResult, ready_policy
 from esplanade.evaluation.score_cache import ScoreCacheError
@@ -67,7 +68,8 @@ def _trips(options: Namespace) -> bool:
     _check_numbers(options.plot_episodes, min(len(trial.episodes) for trial in trials))
     results = walk(trials, options, _files(options, names))
     reacting = rules.people == "reacting"
-    rows = rows_of(results, names, options.seed)
+    chosen = [MEASURES[name] for name in options.measures]
+    rows = rows_of(results, names, options.seed, chosen)
     compared = differences(results, options.seed, reacting=reacting)
     shown = tables.of_recordings(rows, reacting=reacting)
     shown += tables.of_differences(results[0].trial.label, compared)

@@ -18,6 +18,7 @@ from esplanade.commandline.readers import (
 )
 from esplanade.commandline.recording_settings import add_reading, check_reading
 from esplanade.commandline.trajectory_files import check_suffix
+from esplanade.evaluation.guideline_names import GUIDELINES
 from esplanade.evaluation.policy_options import WITH_OPTIONS, has_options
 from esplanade.evaluation.setting_names import NAMES
 from esplanade.policies.names import address_of, is_outside, label_of, option_value
@@ -192,6 +193,15 @@ def parser() -> Parser:
         "for each figure",
     )
     results.add_argument(
+        "--measures",
+        metavar="NAME,NAME,..|all",
+        type=_measures,
+        default=(),
+        help="more rows, measures of the guidelines for social navigation: "
+        + "; ".join(f"{name}: {title}" for name, title in GUIDELINES.items())
+        + " (docs/evaluation.md has their definitions)",
+    )
+    results.add_argument(
         "--score-cache",
         metavar="FILE",
         type=OutputFile(),
@@ -344,6 +354,19 @@ def _check_policies(options: Namespace) -> None:
     for label in labels:
         if labels.count(label) > 1:
             raise UsageError(f"--policy: two of them are called {label}; give one another name")
+
+
+def _measures(text: str) -> tuple[str, ...]:
+    if text == "all":
+        return tuple(GUIDELINES)
+    names = tuple(dict.fromkeys(text.split(",")))
+    for name in names:
+        if name not in GUIDELINES:
+            raise ArgumentTypeError(
+                f"{name!r} is no measure{suggestion(name, GUIDELINES)}; there are "
+                f"{', '.join(GUIDELINES)}, and all"
+            )
+    return names
 
 
 def _scheduler(text: str) -> str:

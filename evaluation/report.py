@@ -60,6 +60,7 @@ def figures(
                 "policy": row.policy,
                 **asdict(row.summary),
                 "intervals": {name: list(bounds) for name, bounds in row.intervals.items()},
+                **_guided(row),
             }
             for row in rows
         ],
@@ -82,3 +83,12 @@ def figures(
             for score in r.scores
         ],
     }
+
+
+def _guided(row: Row) -> dict[str, Any]:
+    """The measures of the guidelines that were chosen, if any."""
+    told = {
+        name: {"mean": mean, "interval": list(interval)}
+        for name, (mean, interval) in row.guidelines.items()
+    }
+    return {"guidelines": told} if told else {}

@@ -4,7 +4,7 @@ import hashlib
 import json
 import math
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import asdict, fields, replace
+from dataclasses import MISSING, asdict, fields, replace
 from functools import cache
 from pathlib import Path
 from types import TracebackType
@@ -143,10 +143,13 @@ def _trip(episode: Episode) -> tuple[int, bool]:
 
 
 def _score(values: dict[str, Any]) -> Score:
-    if set(values) != {field.name for field in fields(Score)}:
+    known = {field.name: field.default is not MISSING for field in fields(Score)}
+    if not values.keys() <= known.keys() or not all(
+        name in values or optional for name, optional in known.items()
+    ):
         raise ValueError("the score has other fields")
-    known: dict[str, Any] = {k: math.nan if v is None else v for k, v in values.items()}
-    return Score(**known)
+    given: dict[str, Any] = {k: math.nan if v is None else v for k, v in values.items()}
+    return Score(**given)
 
 
 def _finite(value: Any) -> Any:

@@ -1,5 +1,6 @@
 """The score of one episode, and the summary of many."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -46,6 +47,16 @@ class Score:
     decisions: int
     decision_ms: float
     decision_max_ms: float
+    jerk_mean_mps3: float = math.nan
+    turning_radpm: float = math.nan
+    """The sum of all turns for each metre walked."""
+    time_to_collision_s: float = math.nan
+    intimate_s: float = math.nan
+    personal_s: float = math.nan
+    social_s: float = math.nan
+    groups_entered: float = math.nan
+    force_work_mps: float = math.nan
+    stalled_s: float = math.nan
     fault: str = ""
     """How the policy failed in the middle of the episode; empty if it did not."""
 
@@ -88,6 +99,7 @@ def score(
     walked_m = float(np.linalg.norm(np.diff(trajectory, axis=0), axis=1).sum())
     accelerations = np.linalg.norm(np.diff(velocities, axis=0), axis=1) / rules.tick_s
     jerks = np.linalg.norm(np.diff(velocities, n=2, axis=0), axis=1) / rules.tick_s**2
+    turns = _turns(velocities)
     return Score(
         number=episode.number,
         pedestrian=replay.ids[episode.pedestrian],
@@ -107,10 +119,12 @@ def score(
         acceleration_max_mps2=float(accelerations.max(initial=0.0)),
         acceleration_rms_mps2=_rms(accelerations),
         jerk_rms_mps3=_rms(jerks),
-        turn_rms_radps=_rms(_turns(velocities) / rules.tick_s),
+        turn_rms_radps=_rms(turns / rules.tick_s),
         decisions=len(decide_s),
         decision_ms=float(np.mean(decide_s or [0.0])) * 1e3,
         decision_max_ms=float(np.max(decide_s or [0.0])) * 1e3,
+        jerk_mean_mps3=float(np.mean(jerks)) if len(jerks) else 0.0,
+        turning_radpm=float(turns.sum()) / max(1e-9, walked_m),
     )
 
 

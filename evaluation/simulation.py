@@ -2,11 +2,12 @@
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from esplanade.evaluation.conduct import Conduct
 from esplanade.evaluation.contacts import ContactMonitor
 from esplanade.evaluation.episodes import Episode
 from esplanade.evaluation.people import People, ReactingPeople
@@ -63,7 +64,7 @@ def run_episode(
     reacting = ReactingPeople(replay, rules, episode) if rules.people == "reacting" else None
     everyone: People = reacting or replay
     sensor = Sensor(everyone, rules, episode)
-    contacts = ContactMonitor(everyone, rules)
+    contacts, conduct = ContactMonitor(everyone, rules), Conduct(rules)
     trajectory = [np.array(episode.start)]
     velocities = [np.zeros(2)]
     decide_s: list[float] = []
@@ -98,6 +99,7 @@ def run_episode(
         velocities.append(velocity)
         trajectory.append(position + velocity * rules.tick_s)
         contacts.step(tick, people, position, velocity, trajectory[-1])
+        conduct.step(people, position, velocity)
         wall_m = min(wall_m, replay.obstacles.distance(trajectory[-1]))
         at_end = policy.follows_recording and tick + 1 >= replay.last[episode.pedestrian]
         reached = at_end or bool(np.hypot(*(goal - trajectory[-1])) <= rules.goal_tolerance_m)
@@ -109,7 +111,7 @@ def run_episode(
         np.array(velocities[1:]).reshape(-1, 2), wall_m, reached, decide_s,
     )  # fmt: skip
     imposed_m = 0.0 if reacting is None else reacting.displacement_m
-    result = replace(result, fault=fault, displacement_m=imposed_m)
+    result = replace(result, fault=fault, displacement_m=imposed_m, **asdict(conduct.figures()))
     return EpisodeResult(result, walked, everyone)
 
 

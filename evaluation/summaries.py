@@ -5,6 +5,7 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
+from esplanade.evaluation.guidelines import Guideline
 from esplanade.evaluation.measures import IMPOSED, MEASURES, Measure, pieces, sample
 from esplanade.evaluation.runner import TrialResult
 from esplanade.evaluation.scores import Score, Summary, summarise
@@ -14,6 +15,7 @@ from esplanade.stats import (
     Sample,
     compare,
     interval_of,
+    means_of,
     resampled_means,
     resampled_medians,
     share_interval,
@@ -52,12 +54,19 @@ class Row(NamedTuple):
     summary: Summary
     intervals: Mapping[str, Interval]
     """The 95 % interval of each field of the summary but counts and greatest values."""
+    guidelines: Mapping[str, tuple[float, Interval]] = {}
+    """The chosen measures of the guidelines by name, each a mean over episodes."""
 
 
-def rows_of(results: Sequence[TrialResult], names: Mapping[Any, str], seed: int) -> list[Row]:
+def rows_of(
+    results: Sequence[TrialResult],
+    names: Mapping[Any, str],
+    seed: int,
+    chosen: Sequence[Guideline] = (),
+) -> list[Row]:
     """The rows of every recording, then of all together if there are several.
 
-    `seed` is that of the resamples.
+    `seed` is that of the resamples; `chosen` are the guidelines' measures that each row has too.
     """
     parts: dict[tuple[str, str], list[Sequence[Score]]] = {}
     for result in results:
@@ -66,9 +75,34 @@ def rows_of(results: Sequence[TrialResult], names: Mapping[Any, str], seed: int)
         for result in results:
             parts.setdefault((POOLED, result.trial.label), []).append(result.scores)
     return [
-        Row(recording, policy, summarise([s for part in scores for s in part]), _of(scores, seed))
+        Row(
+            recording,
+            policy,
+            summarise([s for part in scores for s in part]),
+            _of(scores, seed),
+            _guided(scores, seed, chosen),
+        )
         for (recording, policy), scores in parts.items()
     ]
+
+
+def _guided(
+    parts: Sequence[Sequence[Score]], seed: int, chosen: Sequence[Guideline]
+) -> dict[str, tuple[float, Interval]]:
+    """The means of the guidelines' measures over all episodes, with their intervals."""
+    samples = [
+        Sample.of([[each.of(score) for each in chosen] for score in scores], pieces(scores))
+        for scores in parts
+        if chosen and scores
+    ]
+    if not samples:
+        return {}
+    means = means_of(samples, even=False)
+    intervals = interval_of(resampled_means(samples, seed, even=False), samples)
+    return {
+        each.name: (float(mean), interval)
+        for each, mean, interval in zip(chosen, means, intervals, strict=True)
+    }
 
 
 def differences(

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Final, NamedTuple
 
 from esplanade.evaluation.cells import number, with_interval
+from esplanade.evaluation.guidelines import MEASURES
 from esplanade.evaluation.measures import Measure
 from esplanade.evaluation.summaries import Row
 from esplanade.stats import Difference, Interval, needed
@@ -83,6 +84,11 @@ def of_recordings(rows: Sequence[Row], *, reacting: bool) -> list[Table]:
                 for value, row in zip(values, shown, strict=True)
             )
             lines.append((heading, tuple(cells)))
+        for name in shown[0].guidelines:
+            measure = MEASURES[name]
+            told = (row.guidelines[name] for row in shown)
+            cells = (Cell(mean, measure.digits, interval) for mean, interval in told)
+            lines.append((measure.label, tuple(cells)))
         found.append(Table(recording, tuple(row.policy for row in shown), tuple(lines)))
     return found
 

@@ -156,7 +156,7 @@ def test_options_of_a_policy_of_ones_own_are_varied(
 @pytest.mark.parametrize(
     ("arguments", "fault"),
     [
-        (["--sensitivity"], "--sensitivity of Walker needs --vary"),
+        (["--sensitivity"], "--sensitivity of Paced needs --vary"),
         (["--sensitivity", "--vary=pace=1"], "pace: say its value in the baseline by --policy-opt"),
         (
             ["--sensitivity", "--vary=pace=slow", "--policy-option=pace=1"],
