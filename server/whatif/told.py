@@ -45,6 +45,11 @@ class WhatIf:
             f"From {self.from_s:g} s to {end_s:g} s of {self.file}.",
             PEOPLE[self.people],
         ]
+        if self.changes.scene is not None:
+            told.append(
+                "In both worlds actors begin anew: where they were, with their behaviours from the "
+                "beginning. Recorded people walk through what stands in their way."
+            )
         if self.seeds is None:
             told.append(
                 "One run, with what actors' behaviours had drawn in the recording: nothing is "

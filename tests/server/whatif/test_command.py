@@ -13,10 +13,11 @@ from typing import Any
 import pytest
 
 from esplanade import cli
+from esplanade.planning import Wall
 from esplanade.recordings import read_crowd
 from esplanade.server.recording import head
 from tests.patience import PATIENCE_S
-from tests.server.populated import spec
+from tests.server.populated import HALL, spec
 from tests.server.recording.recorded import record
 
 
@@ -80,6 +81,30 @@ def test_seeds_give_intervals_and_one_page(
     assert text.count("<svg") >= 8
     assert "src=" not in text
     assert "esplanade replay" in text
+
+
+@pytest.fixture(scope="module")
+def walled(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The hall with a wall more, in the eastern half."""
+    wall = Wall(start=(9.0, 3.0), end=(9.0, 8.0))
+    scene = HALL.model_copy(update={"name": "walled", "walls": (*HALL.walls, wall)})
+    path = tmp_path_factory.mktemp("scenes") / "walled.json"
+    path.write_text(scene.model_dump_json(exclude_none=True))
+    return path
+
+
+def test_another_scene_is_compared_with_a_new_beginning_in_the_own_one(
+    recording: Path, walled: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out, walks = tmp_path / "figures.json", tmp_path / "walks.csv"
+    options = ("--from", "1", "--scene", str(walled), "--json", str(out))
+    assert replay(recording, *options, "--trajectories", str(walks)) == 0
+    told = capsys.readouterr().out
+    assert "Changed: scene walled." in told
+    assert "In both worlds actors begin anew" in told
+    apart = json.loads(out.read_text())["strip"]["apart_m"]
+    assert apart[0] < 0.2 < max(apart)
+    assert len(read_crowd(walks).tracks) == 5
 
 
 def test_people_who_react_are_told_of_with_what_is_imposed_on_them(
@@ -172,6 +197,21 @@ def test_options_that_do_not_fit_are_refused(
         replay(recording, *options)
     assert ended.value.code == 2
     assert text in capsys.readouterr().err
+
+
+def test_a_scene_that_is_too_small_or_lacks_a_place_is_refused(
+    recording: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "other.json"
+    path.write_text('{"name": "small", "bounds": [0, 0, 3, 3]}')
+    assert replay(recording, "--scene", str(path)) == 2
+    assert "people were recorded outside of its bounds" in capsys.readouterr().err
+    path.write_text('{"name": "bare", "bounds": [0, 0, 14, 9]}')
+    assert replay(recording, "--scene", str(path)) == 2
+    assert "no place named 'east'" in capsys.readouterr().err
+    path.write_text('{"name": "broken"}')
+    assert replay(recording, "--scene", str(path)) == 2
+    assert "other.json: bounds" in capsys.readouterr().err
 
 
 def test_a_broken_roster_is_named(
