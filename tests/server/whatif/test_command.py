@@ -211,7 +211,7 @@ def test_a_scene_that_is_too_small_or_lacks_a_place_is_refused(
     assert "no place named 'east'" in capsys.readouterr().err
     path.write_text('{"name": "broken"}')
     assert replay(recording, "--scene", str(path)) == 2
-    assert "other.json: bounds" in capsys.readouterr().err
+    assert "bounds: is missing" in capsys.readouterr().err
 
 
 def test_a_broken_roster_is_named(
