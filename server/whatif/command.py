@@ -44,7 +44,7 @@ def what_if(recording: Recording, options: Namespace) -> int:
         changes = Changes.read(
             options.set, options.roster, options.door, options.scene, recording.head.scene
         )
-        stretch, recorded, changed = _runs(recording, options, changes)
+        stretch, unchanged, changed = _runs(recording, options, changes)
     except WhatIfError as error:
         raise UsageError(str(error)) from None
     tick_s = recording.head.built.tick_s
@@ -56,10 +56,10 @@ def what_if(recording: Recording, options: Namespace) -> int:
         changes,
         options.people,
         options.seeds,
-        recorded,
+        unchanged,
         changed,
-        compared(recorded, changed, reacting=options.people == "reacting"),
-        strip(recorded, changed, stretch.duration_s),
+        compared(unchanged, changed, reacting=options.people == "reacting"),
+        strip(unchanged, changed, stretch.duration_s),
     )
     _tell(found, options)
     return exit_codes.OK

@@ -48,12 +48,11 @@ def test_one_run_is_compared_and_says_that_nothing_is_known_of_chance(
     options = ("--from", "1", "--to", "11", "--set", "speed_mps=0.6", "--json", str(out))
     assert replay(recording, *options) == 0
     told = capsys.readouterr().out
-    assert "Changed: speed_mps = 0.6." in told
-    assert "From 1 s to 11 s of hall.mcap." in told
+    assert "from 1 s to 11 s of hall.mcap, changed: speed_mps = 0.6." in told
     assert "nothing is known of chance" in told
     assert "whatever actors do" in told
     figures = {each["name"]: each for each in json.loads(out.read_text())["figures"]}
-    assert figures["speed_mps"]["changed"] < 0.61 < figures["speed_mps"]["recorded"]
+    assert figures["speed_mps"]["changed"] < 0.61 < figures["speed_mps"]["unchanged"]
     assert "low" not in figures["speed_mps"]
     assert "displacement_m" not in figures
 
@@ -67,12 +66,13 @@ def test_seeds_give_intervals_and_one_page(
     assert replay(recording, *changed, *runs, "--report", str(page), "--json", str(out)) == 0
     told = capsys.readouterr().out
     assert "3 runs each" in told
+    assert "fewer than 10 seeds" in told
     found = json.loads(out.read_text())
     speed = next(each for each in found["figures"] if each["name"] == "speed_mps")
     assert speed["low"] <= speed["difference"] <= speed["high"] < 0.0
     assert speed["differs"]
     # Those recorded patrol, and draw nothing; the wanderers of the roster do.
-    assert len(set(speed["by_seed"]["recorded"])) == 1
+    assert len(set(speed["by_seed"]["unchanged"])) == 1
     assert len(set(speed["by_seed"]["changed"])) == 3
     assert len(found["strip"]["begins_s"]) == 8
     text = page.read_text()
@@ -100,7 +100,7 @@ def test_another_scene_is_compared_with_a_new_beginning_in_the_own_one(
     options = ("--from", "1", "--scene", str(walled), "--json", str(out))
     assert replay(recording, *options, "--trajectories", str(walks)) == 0
     told = capsys.readouterr().out
-    assert "Changed: scene walled." in told
+    assert "changed: scene walled." in told
     assert "In both worlds actors begin anew" in told
     apart = json.loads(out.read_text())["strip"]["apart_m"]
     assert apart[0] < 0.2 < max(apart)
@@ -117,7 +117,7 @@ def test_people_who_react_are_told_of_with_what_is_imposed_on_them(
     assert "by a social force model" in told
     figures = {each["name"]: each for each in json.loads(out.read_text())["figures"]}
     for name in ("displacement_m", "delay_s"):
-        assert figures[name]["recorded"] == 0.0 <= figures[name]["changed"]
+        assert figures[name]["unchanged"] == 0.0 <= figures[name]["changed"]
     assert figures["displacement_m"]["changed"] > 0.0
 
 
