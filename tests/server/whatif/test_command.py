@@ -16,6 +16,13 @@ from esplanade import cli
 from esplanade.planning import Wall
 from esplanade.recordings import read_crowd
 from esplanade.server.recording import head
+from esplanade.server.recording.reader import Recording
+from esplanade.server.replay.replayed_zone import ReplayedZone
+from esplanade.server.roster import read_roster
+from esplanade.server.whatif.changes import Changes
+from esplanade.server.whatif.runner import run_all
+from esplanade.server.whatif.runs import Plan, run
+from esplanade.server.whatif.stretch import read_stretch
 from tests.patience import PATIENCE_S
 from tests.server.populated import HALL, spec
 from tests.server.recording.recorded import record
@@ -119,6 +126,19 @@ def test_people_who_react_are_told_of_with_what_is_imposed_on_them(
     for name in ("displacement_m", "delay_s"):
         assert figures[name]["unchanged"] == 0.0 <= figures[name]["changed"]
     assert figures["displacement_m"]["changed"] > 0.0
+
+
+def test_processes_have_the_figures_of_this_one(recording: Path, roster: Path) -> None:
+    with Recording(recording) as opened, ReplayedZone(opened.head) as replayed:
+        first = opened.first_tick
+        stretch = read_stretch(opened, replayed, first, first + 100)
+        changes = Changes({"speed_mps": 0.6}, read_roster(roster))
+        plans = [Plan(changes, "reacting", seed) for seed in (1, 2)]
+        # This zone has run something else meanwhile.
+        here = [run(replayed, stretch, plan).figures for plan in reversed(plans)]
+        there = [each.figures for each in run_all(stretch, plans, 2, lambda: None)]
+    assert there == [pytest.approx(each, rel=0.0, abs=0.0, nan_ok=True) for each in here[::-1]]
+    assert there[0] != there[1]
 
 
 def test_the_changed_run_is_written(recording: Path, roster: Path, tmp_path: Path) -> None:
