@@ -2,15 +2,20 @@
 
     python -m benchmarks.recording
     python -m benchmarks.recording --seconds 600 --actors 50 --people 60
+    python -m benchmarks.recording --seconds 600 --seeds 20
 
 The same world is run twice, with and without a recording, in turns of a second, so that both find
 the machine alike. The time is that of the processor in the thread that runs the ticks; what is
-written is written in another. Reading that clock takes microseconds itself: what is measured in
-the same way where nothing is recorded is taken off. People steer: each turns now and then, and says
+written is written in another. Reading that clock takes microseconds itself: what is measured in the
+same way where nothing is recorded is taken off. The share of the cores that a what-if uses is the
+time of the processor of all its processes, by the time that passed on all cores, from when the
+first one is started until the last one has ended. People steer: each turns now and then, and says
 so five times a second.
 """
 
 import argparse
+import os
+import resource
 import tempfile
 import time
 from collections.abc import Sequence
@@ -29,6 +34,10 @@ from esplanade.server.recording.reader import Recording
 from esplanade.server.recording.zone_recording import ZoneRecording
 from esplanade.server.replay.replayed_zone import ReplayedZone
 from esplanade.server.settings import ServerSettings
+from esplanade.server.whatif.changes import Changes
+from esplanade.server.whatif.runner import run_all
+from esplanade.server.whatif.runs import Plan
+from esplanade.server.whatif.stretch import read_stretch
 from esplanade.server.world.inputs import Input, Join, SteerMany
 from esplanade.server.world.zone import Zone
 
@@ -107,7 +116,7 @@ class World:
         self._population.close()
 
 
-def measured(actors: int, people: int, seconds: int, path: Path) -> None:
+def measured(actors: int, people: int, seconds: int, seeds: int, path: Path) -> None:
     """Print what recording a world of this size costs."""
     plain, kept = World(actors, people, None), World(actors, people, path)
     without: list[float] = []
@@ -137,6 +146,7 @@ def measured(actors: int, people: int, seconds: int, path: Path) -> None:
     _bytes(path, seconds)
     _again(path, seconds)
     _seek(path, seconds)
+    _what_if(path, seeds)
 
 
 def _bytes(path: Path, seconds: int) -> None:
@@ -210,16 +220,44 @@ def _seek(path: Path, seconds: int) -> None:
     )
 
 
+def _what_if(path: Path, seeds: int) -> None:
+    """Print how well runs with other parameters use the cores."""
+    changes = (Changes(), Changes(values={"risk_weight": 20.0}))
+    plans = [Plan(each, "recorded", seed) for seed in range(1, seeds + 1) for each in changes]
+    with Recording(path) as recording:
+        start = time.perf_counter()
+        with ReplayedZone(recording.head) as replayed:
+            stretch = read_stretch(recording, replayed, recording.first_tick)
+        read = time.perf_counter() - start
+        cores = len(os.sched_getaffinity(0))
+        before, start = _children_s(), time.perf_counter()
+        run_all(stretch, plans, cores, lambda: None)
+        took = time.perf_counter() - start
+    share = 100.0 * (_children_s() - before) / (took * cores)
+    print(
+        f"  what if, {seeds} seeds     {len(plans)} runs of {stretch.duration_s:.0f} s in "
+        f"{took:.1f} s, {len(plans) * stretch.duration_s / took:.1f} times as fast as the clock; "
+        f"{share:.0f} % of {cores} cores; to run it as recorded before took {read:.1f} s"
+    )
+
+
+def _children_s() -> float:
+    """The time of the processor that processes have taken which were started here and ended."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
 def main(arguments: Sequence[str] | None = None) -> None:
     """Print all figures."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--actors", type=int, default=10)
     parser.add_argument("--people", type=int, default=20)
     parser.add_argument("--seconds", type=int, default=120, help="of the world")
+    parser.add_argument("--seeds", type=int, default=4, help="of the what-if")
     options = parser.parse_args(arguments)
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "world.mcap"
-        measured(options.actors, options.people, options.seconds, path)
+        measured(options.actors, options.people, options.seconds, options.seeds, path)
 
 
 if __name__ == "__main__":

@@ -495,7 +495,7 @@ examples:
   esplanade serve --scene scenes/plaza.json --actors 30 --port 9000
   esplanade serve --world scenes/town.json         several zones, and portals between them
   esplanade serve --data world                     the world goes on from there after a restart
-  esplanade serve --record kept              then `esplanade replay kept/gallery.mcap`
+  esplanade serve --record kept              then `esplanade replay kept/Gallery.mcap`
   esplanade serve --crowd zara1.csv                then `esplanade bots --replay zara1.csv`
 
 Every option can also be given as an environment variable: --tick-rate is ESPLANADE_TICK_RATE.

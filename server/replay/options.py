@@ -10,13 +10,13 @@ from esplanade.commandline.trajectory_files import check_suffix
 
 EPILOG: Final = """\
 examples:
-  esplanade serve --record kept              writes kept/gallery.mcap as the world runs
-  esplanade replay kept/gallery.mcap --verify
-  esplanade replay kept/gallery.mcap --trajectories walks.csv --hz 10
-  esplanade replay kept/gallery.mcap --from 00:12:30 --to 00:13:00 --trajectories walks.csv
-  esplanade replay kept/gallery.mcap --info
-  esplanade replay kept/gallery.mcap --set risk_weight=20 --seeds 20 --report out.html
-  esplanade replay kept/gallery.mcap --from 120 --to 240 --door 'Archive door=closed'
+  esplanade serve --record kept              writes kept/Gallery.mcap as the world runs
+  esplanade replay kept/Gallery.mcap --verify
+  esplanade replay kept/Gallery.mcap --trajectories walks.csv --hz 10
+  esplanade replay kept/Gallery.mcap --from 00:12:30 --to 00:13:00 --trajectories walks.csv
+  esplanade replay kept/Gallery.mcap --info
+  esplanade replay kept/Gallery.mcap --set risk_weight=20 --seeds 20 --report out.html
+  esplanade replay kept/Gallery.mcap --from 120 --to 240 --door 'Archive door=closed'
 
 a recording has all inputs of a zone, so that it runs again bit for bit: with the same program, and
 on the same kind of processor. --verify compares it with digests that stand in it, each second. A
@@ -24,9 +24,9 @@ recording of another program is refused; --other-program runs it all the same, a
 says where it goes another way. A server that was killed leaves a file that is read up to the last
 whole second.
 
-with --set, --roster or --door the stretch is run again as another world and beside it as recorded,
-and what became of people and actors is compared. With --seeds, actors' behaviours draw anew in each
-run, so that there are intervals.
+with --set, --roster, --door or --scene the stretch is run again as another world and beside it as
+recorded, and what became of people and actors is compared. With --seeds, actors' behaviours draw
+anew in each run, so that there are intervals.
 
 exit code: 0 done, and with --verify all is equal, 1 something differs, or the file is damaged, 2
 wrong usage, a moment or value that cannot be, or a recording of another program, 130 Ctrl-C
@@ -106,6 +106,12 @@ def _add_what_if(made: Parser) -> None:
         help="a door that stays so from the beginning; may be given several times",
     )
     group.add_argument(
+        "--scene",
+        metavar="FILE",
+        type=InputFile(),
+        help="another scene; actors begin anew in it where they were, and beside it in the own one",
+    )
+    group.add_argument(
         "--people",
         choices=("recorded", "reacting"),
         help="recorded: people are where they were, whatever actors do; reacting: they evade "
@@ -135,7 +141,9 @@ def _add_what_if(made: Parser) -> None:
 
 def asks_what_if(options: Namespace) -> bool:
     """Whether something is to be changed."""
-    return bool(options.set or options.roster is not None or options.door)
+    return bool(
+        options.set or options.door or options.roster is not None or options.scene is not None
+    )
 
 
 def check(options: Namespace) -> None:
@@ -167,7 +175,7 @@ def _check_what_if(options: Namespace) -> None:
         for name in ("people", "seeds", "processes", "report", "json"):
             if getattr(options, name) is not None:
                 raise UsageError(
-                    f"--{name}: nothing is changed; give --set, --roster or --door as well"
+                    f"--{name}: nothing is changed; give --set, --roster, --door or --scene"
                 )
         options.people = "recorded"
         return

@@ -84,4 +84,6 @@ def _changed(options: Namespace) -> dict[str, str]:
     given = [*options.set, *options.door]
     if options.roster is not None:
         given.append(f"the roster {options.roster.name}")
+    if options.scene is not None:
+        given.append(f"the scene {options.scene.name}")
     return {"changed": ", ".join(given)} if given else {}

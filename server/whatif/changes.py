@@ -10,6 +10,7 @@ from pydantic import ValidationError
 from esplanade.actors import ActorParameters
 from esplanade.commandline.parser import suggestion
 from esplanade.planning import Scene
+from esplanade.planning.scene.scene_file import SceneError, read_scene
 from esplanade.server.roster import Roster, RosterError, read_roster
 from esplanade.server.whatif.errors import WhatIfError
 
@@ -26,18 +27,26 @@ class Changes:
     """The actors that walk instead of the recorded ones."""
     doors: Mapping[str, bool] = field(default_factory=dict)
     """Whether doors are open, by name."""
+    scene: Scene | None = None
+    """The scene in which all begins anew; None for the recorded state in its own scene."""
 
     @classmethod
     def read(
-        cls, values: Sequence[str], roster: Path | None, doors: Sequence[str], scene: Scene
+        cls,
+        values: Sequence[str],
+        roster: Path | None,
+        doors: Sequence[str],
+        scene: Path | None,
+        recorded: Scene,
     ) -> Self:
-        """The changes that texts like `risk_weight=20` and `gate=closed` name, in a scene.
+        """The changes that texts like `risk_weight=20` and `gate=closed` name, and files.
 
         Raises
         ------
         WhatIfError
-            There is no such parameter or door, a value is out of range, or the roster is broken.
+            There is no such parameter or door, a value is out of range, or a file is broken.
         """
+        other = None if scene is None else _scene(scene)
         try:
             walking = None if roster is None else read_roster(roster)
         except RosterError as error:
@@ -45,11 +54,9 @@ class Changes:
         return cls(
             dict(_value(text) for text in values),
             walking,
-            dict(_door(text, scene) for text in doors),
+            dict(_door(text, other or recorded) for text in doors),
+            other,
         )
-
-    def __bool__(self) -> bool:
-        return bool(self.values or self.roster is not None or self.doors)
 
     @property
     def texts(self) -> list[str]:
@@ -60,7 +67,18 @@ class Changes:
         told += [
             f"{name}: {'open' if is_open else 'closed'}" for name, is_open in self.doors.items()
         ]
+        if self.scene is not None:
+            told.append(f"scene {self.scene.name}")
         return told
+
+
+def _scene(path: Path) -> Scene:
+    try:
+        return read_scene(path)
+    except OSError as error:
+        raise WhatIfError(f"--scene: {path}: {error.strerror or error}") from None
+    except SceneError as error:
+        raise WhatIfError(f"--scene: {error}") from None
 
 
 def _value(text: str) -> tuple[str, float | int]:

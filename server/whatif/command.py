@@ -20,12 +20,14 @@ from esplanade.server.whatif import report
 from esplanade.server.whatif.changes import Changes
 from esplanade.server.whatif.comparison import compared, strip
 from esplanade.server.whatif.errors import WhatIfError
-from esplanade.server.whatif.fork import check
+from esplanade.server.whatif.fork import Fork, check
 from esplanade.server.whatif.fork_inputs import first_inputs
 from esplanade.server.whatif.runner import run_all
-from esplanade.server.whatif.runs import Plan, Run, run
+from esplanade.server.whatif.runs import Plan, Run, run, zone_of
 from esplanade.server.whatif.stretch import Stretch, read_stretch
 from esplanade.server.whatif.told import HEADS, WhatIf
+from esplanade.server.whatif.walkers import RecordedWalkers
+from esplanade.server.world.zone import Zone
 
 
 def what_if(recording: Recording, options: Namespace) -> int:
@@ -39,8 +41,10 @@ def what_if(recording: Recording, options: Namespace) -> int:
         The file of trajectories cannot be written.
     """
     try:
-        changes = Changes.read(options.set, options.roster, options.door, recording.head.scene)
-        stretch, recorded, changed = _runs(recording, options, changes)
+        changes = Changes.read(
+            options.set, options.roster, options.door, options.scene, recording.head.scene
+        )
+        stretch, unchanged, changed = _runs(recording, options, changes)
     except WhatIfError as error:
         raise UsageError(str(error)) from None
     tick_s = recording.head.built.tick_s
@@ -52,10 +56,10 @@ def what_if(recording: Recording, options: Namespace) -> int:
         changes,
         options.people,
         options.seeds,
-        recorded,
+        unchanged,
         changed,
-        compared(recorded, changed, reacting=options.people == "reacting"),
-        strip(recorded, changed, stretch.duration_s),
+        compared(unchanged, changed, reacting=options.people == "reacting"),
+        strip(unchanged, changed, stretch.duration_s),
     )
     _tell(found, options)
     return exit_codes.OK
@@ -66,7 +70,8 @@ def _runs(
 ) -> tuple[Stretch, list[Run], list[Run]]:
     """The stretch, and its runs as recorded and changed."""
     first, last = bounds(recording, options)
-    nothing = Changes()
+    # What begins anew in another scene is compared with what begins anew in the recorded one.
+    nothing = Changes(scene=None if changes.scene is None else recording.head.scene)
     seeds = [None] if options.seeds is None else list(range(1, options.seeds + 1))
     plans = [Plan(each, options.people, seed) for seed in seeds for each in (nothing, changes)]
     with ReplayedZone(recording.head) as replayed, progress(share=True, time_left=True) as shown:
@@ -77,8 +82,11 @@ def _runs(
             first,
             last,
             lambda share: shown.update(task, completed=share),
-            lambda zone: check(zone, first_inputs(zone, changes)),
+            lambda zone: _check(zone, changes),
         )
+        if changes.scene is not None:
+            with zone_of(plans[1], stretch, replayed) as zone:
+                Fork(zone, stretch, changes, RecordedWalkers(stretch))
         if options.seeds is None:
             shown.update(task, description="running it changed", completed=0.0)
             return stretch, *_once(recording, replayed, stretch, plans, options)
@@ -97,11 +105,19 @@ def _once(
     options: Namespace,
 ) -> tuple[list[Run], list[Run]]:
     """One run of each kind; the changed one may be written."""
-    recorded = run(replayed, stretch, plans[0])
-    if options.trajectories is None:
-        return [recorded], [run(replayed, stretch, plans[1])]
-    with WrittenTrajectories(recording, replayed, options) as written:
-        return [recorded], [run(replayed, stretch, plans[1], written.take)]
+    with zone_of(plans[0], stretch, replayed) as zone:
+        recorded = run(zone, stretch, plans[0])
+    with zone_of(plans[1], stretch, replayed) as zone:
+        if options.trajectories is None:
+            return [recorded], [run(zone, stretch, plans[1])]
+        with WrittenTrajectories(recording, zone, options) as written:
+            return [recorded], [run(zone, stretch, plans[1], written.take)]
+
+
+def _check(zone: Zone, changes: Changes) -> None:
+    """Refuse early what the recorded zone would refuse; another scene has a zone of its own."""
+    if changes.scene is None:
+        check(zone, first_inputs(zone, changes))
 
 
 def _tell(found: WhatIf, options: Namespace) -> None:

@@ -22,17 +22,17 @@ class Row:
     """A figure with and without the change."""
 
     measure: Measure
-    recorded: Floats
-    """(S,): the figure of each run as it was recorded."""
+    unchanged: Floats
+    """(S,): the figure of each run without the change."""
     changed: Floats
     """(S,): the same with the change, by the same seeds."""
     difference: Difference
-    """Changed less recorded."""
+    """Changed less unchanged."""
 
     @property
     def means(self) -> tuple[float, float]:
-        """The means as recorded and with the change, over the runs that have the figure."""
-        return _mean(self.recorded), _mean(self.changed)
+        """The means without the change and with it, over the runs that have the figure."""
+        return _mean(self.unchanged), _mean(self.changed)
 
 
 @dataclass(frozen=True)
@@ -51,10 +51,10 @@ class Strip:
     """(P,): the mean distance of each actor from where it is without the change; nan for none."""
 
 
-def compared(recorded: Sequence[Run], changed: Sequence[Run], *, reacting: bool) -> list[Row]:
+def compared(unchanged: Sequence[Run], changed: Sequence[Run], *, reacting: bool) -> list[Row]:
     """The rows of all figures; runs stand in the order of their seeds, one at least."""
     measures = shown(reacting=reacting)
-    ours, theirs = _values(changed, measures), _values(recorded, measures)
+    ours, theirs = _values(changed, measures), _values(unchanged, measures)
     # A figure that no pair of runs has is left out, as are those that count for nothing then.
     known = np.isfinite(ours - theirs).any(axis=0)
     seeds = list(range(len(ours)))
@@ -66,12 +66,14 @@ def compared(recorded: Sequence[Run], changed: Sequence[Run], *, reacting: bool)
     ]
 
 
-def strip(recorded: Sequence[Run], changed: Sequence[Run], duration_s: float) -> Strip:
+def strip(unchanged: Sequence[Run], changed: Sequence[Run], duration_s: float) -> Strip:
     """The course of the difference."""
-    less = np.array([c.conflicts_s - r.conflicts_s for r, c in zip(recorded, changed, strict=True)])
+    less = np.array(
+        [c.conflicts_s - u.conflicts_s for u, c in zip(unchanged, changed, strict=True)]
+    )
     sample = [Sample.of(less, list(range(len(less))))]
     bounds = np.array(interval_of(resampled_means(sample, RESAMPLING_SEED, even=False), sample))
-    apart = [_apart(r, c) for r, c in zip(recorded, changed, strict=True)]
+    apart = [_apart(u, c) for u, c in zip(unchanged, changed, strict=True)]
     pieces = less.shape[1]
     piece_s = duration_s / pieces
     return Strip(
@@ -84,11 +86,11 @@ def strip(recorded: Sequence[Run], changed: Sequence[Run], duration_s: float) ->
     )
 
 
-def _apart(recorded: Run, changed: Run) -> Floats:
+def _apart(unchanged: Run, changed: Run) -> Floats:
     """The mean distance (P,), metres, of the actors that both have."""
-    both = [actor for actor in recorded.places if actor in changed.places]
-    away = [changed.places[actor] - recorded.places[actor] for actor in both]
-    pieces = len(recorded.conflicts_s)
+    both = [actor for actor in unchanged.places if actor in changed.places]
+    away = [changed.places[actor] - unchanged.places[actor] for actor in both]
+    pieces = len(unchanged.conflicts_s)
     distances = np.hypot(*np.array(away).reshape(len(both), pieces, 2).transpose(2, 0, 1))
     return np.array([_mean(column) for column in distances.T] if both else [math.nan] * pieces)
 

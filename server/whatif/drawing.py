@@ -22,7 +22,7 @@ _STRIP_HEIGHT: Final = 120
 
 def by_seed(row: Row, told: str) -> str:
     """The difference of each seed as a point, and their mean with its interval below."""
-    values = row.changed - row.recorded
+    values = row.changed - row.unchanged
     values = values[np.isfinite(values)]
     bounds = [0.0, *values.tolist(), *(b for b in row.difference.interval if math.isfinite(b))]
     low, high = min(bounds), max(bounds)
@@ -31,7 +31,7 @@ def by_seed(row: Row, told: str) -> str:
     def x(value: float) -> str:
         return f"{_LEFT + scale * (value - low):.1f}"
 
-    name, digits = escape(row.measure.label.strip()), row.measure.digits
+    name, digits = escape(row.measure.label), row.measure.digits
     points = "".join(f'<circle class="dot c1" cx="{x(v)}" cy="44" r="2.5"/>' for v in values)
     mean, interval = row.difference.mean, row.difference.interval
     line = ""
@@ -53,13 +53,13 @@ def over_time(found: Strip) -> list[str]:
     drawn = [
         _strip(
             found,
-            "people with a contact ahead, changed less recorded, s of people in each piece",
+            "people with a contact ahead, changed less unchanged, s of people in each piece",
             found.conflicts_s,
             (found.low_s, found.high_s),
         )
     ]
     if np.isfinite(found.apart_m).any():
-        title = "distance of actors from where they are as recorded, mean m"
+        title = "distance of actors from where they are unchanged, mean m"
         drawn.append(_strip(found, title, found.apart_m))
     return drawn
 
@@ -79,10 +79,11 @@ def _strip(
     def y(value: float) -> float:
         return floor - scale * (value - low)
 
+    sign = "+" if low < 0.0 or bounds is not None else ""
     drawn = [
         f'<svg viewBox="0 0 {_STRIP_WIDTH} {_STRIP_HEIGHT}" role="img" aria-label="{title}">',
         f'<text class="title" x="8" y="16">{title}</text>',
-        f'<text class="mark y" x="{_STRIP_LEFT - 6}" y="{y(high) + 4:.1f}">{high:+.2f}</text>',
+        f'<text class="mark y" x="{_STRIP_LEFT - 6}" y="{y(high) + 4:.1f}">{high:{sign}.2f}</text>',
     ]
     if low < 0.0:
         drawn.append(
@@ -96,7 +97,7 @@ def _strip(
                 f'<path class="line c{int(value > 0.0)}" style="stroke-width:{0.7 * wide:.1f}" '
                 f'd="M{middle:.1f} {y(0.0):.1f}V{y(value):.1f}"/>'
             )
-        told = f"{at_s:.0f} s: {value:+.2f}"
+        told = f"{at_s:.0f} s: {value:{sign}.2f}"
         if bounds is not None and math.isfinite(bounds[0][k]):
             ends = bounds[0][k], bounds[1][k]
             told += f" ({ends[0]:+.2f} to {ends[1]:+.2f})"
@@ -113,10 +114,11 @@ def _strip(
 
 
 def _times(found: Strip, wide: float) -> Sequence[str]:
-    """Six marks of time along the strip."""
+    """Six marks of time along the strip; the last one ends with it."""
     pieces = len(found.begins_s)
+    marks = sorted({round(pieces * share / 5) for share in range(6)})
     return [
-        f'<text class="mark x" x="{_STRIP_LEFT + wide * k:.1f}" y="{_STRIP_HEIGHT - 6}">'
-        f"{k * found.piece_s:.0f} s</text>"
-        for k in sorted({round(pieces * share / 5) for share in range(6)})
+        f'<text class="mark {"y" if k == pieces else "x"}" x="{_STRIP_LEFT + wide * k:.1f}" '
+        f'y="{_STRIP_HEIGHT - 6}">{k * found.piece_s:.0f} s</text>'
+        for k in marks
     ]

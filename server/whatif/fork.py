@@ -9,7 +9,13 @@ import structlog
 from esplanade.server.replay.replayed_zone import ReplayedZone
 from esplanade.server.whatif.changes import Changes
 from esplanade.server.whatif.errors import WhatIfError
-from esplanade.server.whatif.fork_inputs import FIRST_COMMAND, ForkInputs, first_inputs, is_still
+from esplanade.server.whatif.fork_inputs import (
+    FIRST_COMMAND,
+    ForkInputs,
+    begun_anew,
+    first_inputs,
+    is_still,
+)
 from esplanade.server.whatif.stretch import Stretch
 from esplanade.server.whatif.walkers import Walkers
 from esplanade.server.world.frame import Frame
@@ -35,6 +41,7 @@ class Fork:
     ) -> None:
         """Be at the first tick of the stretch; heavy.
 
+        With another scene the zone is one of that scene, in which nothing has happened yet.
         With a `seed`, all that actors' behaviours draw is drawn anew from there.
 
         Raises
@@ -42,8 +49,11 @@ class Fork:
         WhatIfError
             The changes would be refused by the world.
         """
-        replayed.go_to(stretch.state)
         zone = replayed.zone
+        if changes.scene is None:
+            replayed.go_to(stretch.state)
+        else:
+            zone.skip_to(stretch.first_tick)
         zone.state.begin_ids(*OWN_IDS)
         if seed is not None:
             mixed = np.random.SeedSequence([stretch.head.built.seed, seed])
@@ -55,7 +65,8 @@ class Fork:
         self.is_still = False
         """Whether nobody moved in the latest tick: the world was paused."""
         self._stretch = stretch
-        self._first = first_inputs(zone, changes)
+        anew = [] if changes.scene is None else begun_anew(zone, stretch, changes)
+        self._first = [*anew, *first_inputs(zone, changes)]
         self._inputs = ForkInputs(zone, stretch, changes, stretch.ticks)
         check(zone, self._first)
 

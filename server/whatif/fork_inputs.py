@@ -3,9 +3,12 @@
 from collections.abc import Iterable, Mapping
 from typing import Any, Final
 
+import numpy as np
+
 from esplanade.server.recording.reader import RecordedTick
 from esplanade.server.whatif.changes import Changes
 from esplanade.server.whatif.derived_anew import KINDS, DerivedAnew
+from esplanade.server.whatif.errors import WhatIfError
 from esplanade.server.whatif.stretch import Stretch
 from esplanade.server.world.inputs import (
     AddActors,
@@ -125,6 +128,34 @@ class ForkInputs:
                     commands.append(one)
         doors = self._doors(item.doors)
         return [Batch(item.command, tuple(commands), doors)] if commands or doors else []
+
+
+def begun_anew(zone: Zone, stretch: Stretch, changes: Changes) -> list[Input]:
+    """The inputs by which everybody comes into an empty zone, for its first tick.
+
+    Raises
+    ------
+    WhatIfError
+        Somebody was recorded outside of its scene.
+    """
+    x0, y0, x1, y1 = zone.scene.bounds
+    found: list[Input] = []
+    for who, walked in stretch.walked.items():
+        places = walked.places[~np.isnan(walked.places[:, 0]), :2]
+        (least_x, least_y), (most_x, most_y) = places.min(axis=0), places.max(axis=0)
+        if not (x0 <= least_x and most_x <= x1 and y0 <= least_y and most_y <= y1):
+            raise WhatIfError(
+                f"--scene: people were recorded outside of its bounds, {x0:g}, {y0:g} to {x1:g}, "
+                f"{y1:g}"
+            )
+        at = walked.at(stretch.first_tick)
+        if at is not None:
+            found.append(Join(who, f"Person {who}", at, id=who))
+    if changes.roster is None and stretch.cast:
+        specs = tuple(spec for spec, _ in stretch.cast)
+        parameters = tuple(each.model_copy(update=dict(changes.values)) for _, each in stretch.cast)
+        found.append(AddActors(FIRST_COMMAND, specs, parameters))
+    return found
 
 
 def first_inputs(zone: Zone, changes: Changes) -> list[Input]:

@@ -33,7 +33,7 @@ MEASURES: Final = (
     Measure("contacts", "contacts", 2, "times that an actor and a person touched"),
     Measure(
         "toward",
-        "  actor moving toward them",
+        "contacts, actor moving toward them",
         2,
         f"contacts in which the actor went toward the person, faster than {TOWARD_MPS:g} m/s",
     ),

@@ -37,7 +37,7 @@ def _page(found: WhatIf) -> str:
         parts.append(
             f'<section><h2>Differences by seed</h2><div class="charts">{plots}</div></section>'
         )
-    meanings = [(row.measure.label.strip(), row.measure.meaning) for row in found.rows]
+    meanings = [(row.measure.label, row.measure.meaning) for row in found.rows]
     terms = "".join(f"<dt>{escape(name)}</dt><dd>{escape(text)}</dd>" for name, text in meanings)
     parts.append(f"<section><h2>What the figures mean</h2><dl>{terms}</dl></section>")
     return page(f"What if: {', '.join(found.changes.texts)}", parts)

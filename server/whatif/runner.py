@@ -11,7 +11,7 @@ from typing import Any
 from esplanade.server import logs
 from esplanade.server.offline.settings import OfflineSettings
 from esplanade.server.replay.replayed_zone import ReplayedZone
-from esplanade.server.whatif.runs import Plan, Run, run
+from esplanade.server.whatif.runs import Plan, Run, run, zone_of
 from esplanade.server.whatif.stretch import Stretch
 
 
@@ -81,7 +81,8 @@ def _run(plan: Plan) -> Run:
     with logs.written(OfflineSettings(log_level="warning")):
         if mine.replayed is None:
             mine.replayed = ReplayedZone(mine.stretch.head)
-        return run(mine.replayed, mine.stretch, plan, lambda _: _go_on(mine.stopping))
+        with zone_of(plan, mine.stretch, mine.replayed) as replayed:
+            return run(replayed, mine.stretch, plan, lambda _: _go_on(mine.stopping))
 
 
 def _go_on(stopping: Any) -> None:

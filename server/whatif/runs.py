@@ -1,7 +1,8 @@
 """One run of a fork: its figures, and the course of some of them over time."""
 
-from collections.abc import Callable, Hashable
-from dataclasses import dataclass
+from collections.abc import Callable, Hashable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -10,6 +11,7 @@ from numpy.typing import NDArray
 from esplanade.server.replay.replayed_zone import ReplayedZone
 from esplanade.server.whatif.changes import Changes, People
 from esplanade.server.whatif.encounters import Encounters
+from esplanade.server.whatif.errors import WhatIfError
 from esplanade.server.whatif.fork import Fork
 from esplanade.server.whatif.reacting_walkers import ReactingWalkers
 from esplanade.server.whatif.stretch import Stretch
@@ -85,6 +87,26 @@ def run(
         places,
         fork.planning_failed,
     )
+
+
+@contextmanager
+def zone_of(plan: Plan, stretch: Stretch, replayed: ReplayedZone) -> Iterator[ReplayedZone]:
+    """The zone in which a plan is run: that of the recording, or a fresh one of another scene.
+
+    Raises
+    ------
+    WhatIfError
+        The scene has no place to stand.
+    """
+    if plan.changes.scene is None:
+        yield replayed
+        return
+    try:
+        fresh = ReplayedZone(replace(stretch.head, scene=plan.changes.scene))
+    except ValueError as error:
+        raise WhatIfError(f"--scene: {error}") from None
+    with fresh:
+        yield fresh
 
 
 def piece_ends(stretch: Stretch) -> list[int]:

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from esplanade.actors import ActorParameters, ActorSpec
 from esplanade.server.recording.head import Head
 from esplanade.server.recording.reader import RecordedTick, Recording
 from esplanade.server.replay.replayed_zone import ReplayedZone
@@ -33,6 +34,8 @@ class Stretch:
     """The ids that newcomers got, by tick and ticket."""
     actors_walked: dict[str, Walked]
     """Where actors were a tick before each one, by their ids, at the heights of the tick itself."""
+    cast: tuple[tuple[ActorSpec, ActorParameters], ...]
+    """The actors at its first tick: what each was doing, where it was, and its parameters."""
     actors_radii_m: dict[str, float]
     """The radii that actors had at last."""
 
@@ -89,13 +92,14 @@ def read_stretch(
     """
     watched, ticks = _Watched(), list[RecordedTick]()
     state: dict[str, Any] | None = None
+    cast: tuple[tuple[ActorSpec, ActorParameters], ...] = ()
     began = False
     for second in recording.seconds(from_tick):
         if second.state is not None and not began:
             replayed.go_to(second.state)
             began = True
             if second.last_tick >= from_tick:
-                state = second.state
+                state, cast = second.state, _cast(replayed.zone)
                 check(replayed.zone)
                 watched.take(replayed.zone, None)
         for tick in second.ticks:
@@ -106,7 +110,7 @@ def read_stretch(
                 ticks.append(tick)
                 watched.take(replayed.zone, frame)
             elif tick.tick == from_tick:
-                state = replayed.zone.save_exactly()
+                state, cast = replayed.zone.save_exactly(), _cast(replayed.zone)
                 check(replayed.zone)
                 watched.take(replayed.zone, None)
         if second.last_tick > to_tick:
@@ -122,5 +126,18 @@ def read_stretch(
         watched.people.walked(),
         watched.joined,
         watched.actors.walked(),
+        cast,
         watched.radii_m,
+    )
+
+
+def _cast(zone: Zone) -> tuple[tuple[ActorSpec, ActorParameters], ...]:
+    table = zone.agents
+    places = np.column_stack([table.agents.positions, table.agents.heights]).tolist()
+    return tuple(
+        (
+            zone.actors[actor].model_copy(update={"place": tuple(place), "near": False}),
+            zone.parameters(str(actor)),
+        )
+        for actor, place in zip(table.ids, places, strict=True)
     )

@@ -9,10 +9,12 @@ from esplanade.server.whatif.changes import Changes, People
 from esplanade.server.whatif.comparison import Row, Strip
 from esplanade.server.whatif.runs import Run
 
-HEADS: Final = ("", "as recorded", "changed", "difference")
+HEADS: Final = ("", "unchanged", "changed", "difference")
+ENOUGH_SEEDS: Final = 10
+"""With fewer, whole seeds that are drawn anew do not reach as far as intervals should."""
 PEOPLE: Final = {
     "recorded": "People are where they were recorded, whatever actors do: they do not answer to "
-    "what is changed. So figures tell what would have happened to people who evade nobody anew.",
+    "what is changed. Figures are those of people who evade nobody anew.",
     "reacting": "People walk toward where they were recorded, and evade actors by a social force "
     "model as far as these are in the way more than when they were recorded. They choose no other "
     "ways, goals or times: a door in their way holds them up.",
@@ -31,7 +33,7 @@ class WhatIf:
     people: People
     seeds: int | None
     """The number of seeds; None for one run with what chance drew in the recording."""
-    recorded: Sequence[Run]
+    unchanged: Sequence[Run]
     changed: Sequence[Run]
     rows: Sequence[Row]
     strip: Strip
@@ -41,10 +43,16 @@ class WhatIf:
         """What was asked, how it was run, and what that means."""
         end_s = self.from_s + self.duration_s
         told = [
-            f"Changed: {', '.join(self.changes.texts)}.",
-            f"From {self.from_s:g} s to {end_s:g} s of {self.file}.",
+            f"The stretch from {self.from_s:g} s to {end_s:g} s of {self.file}, changed: "
+            + ", ".join(self.changes.texts)
+            + ".",
             PEOPLE[self.people],
         ]
+        if self.changes.scene is not None:
+            told.append(
+                "In both worlds actors begin anew: where they were, with their behaviours from the "
+                "beginning. Recorded people walk through what stands in their way."
+            )
         if self.seeds is None:
             told.append(
                 "One run, with what actors' behaviours had drawn in the recording: nothing is "
@@ -56,9 +64,14 @@ class WhatIf:
                 "is that of two runs with one seed. Intervals hold together in 95 % of cases for "
                 "chance of that kind: of another hour or other people they say nothing."
             )
+            if self.seeds < ENOUGH_SEEDS:
+                told.append(
+                    f"With fewer than {ENOUGH_SEEDS} seeds intervals are narrower than they should "
+                    "be: take them for a first look."
+                )
             if all((row.changed == row.changed[0]).all() for row in self.rows) and self.seeds > 1:
                 told.append("All seeds have the same figures: nothing in this world is drawn.")
-        failed = sum(run.planning_failed for run in [*self.recorded, *self.changed])
+        failed = sum(run.planning_failed for run in [*self.unchanged, *self.changed])
         if failed:
             told.append(f"In {failed} ticks planning failed, and the actors stood.")
         return told
@@ -96,12 +109,12 @@ class WhatIf:
 
 
 def _plain(row: Row, *, intervals: bool) -> dict[str, Any]:
-    found, (recorded, changed) = row.difference, row.means
+    found, (unchanged, changed) = row.difference, row.means
     told: dict[str, Any] = {
         "name": row.measure.name,
-        "label": row.measure.label.strip(),
+        "label": row.measure.label,
         "meaning": row.measure.meaning,
-        "recorded": recorded,
+        "unchanged": unchanged,
         "changed": changed,
         "difference": found.mean,
     }
@@ -110,7 +123,7 @@ def _plain(row: Row, *, intervals: bool) -> dict[str, Any]:
             "low": found.interval.low,
             "high": found.interval.high,
             "differs": found.differs,
-            "by_seed": {"recorded": row.recorded.tolist(), "changed": row.changed.tolist()},
+            "by_seed": {"unchanged": row.unchanged.tolist(), "changed": row.changed.tolist()},
         }
     return told
 

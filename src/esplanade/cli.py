@@ -102,7 +102,7 @@ def _help() -> str:
         "  esplanade serve --data world             keeps operators and the audit",
         "  esplanade op user add olga --role tuner --data world",
         "  esplanade run my.json --actors 10 --seconds 60 --out my.csv",
-        "  esplanade replay kept/gallery.mcap --verify",
+        "  esplanade replay kept/Gallery.mcap --verify",
         "  esplanade bots --count 200 --duration 60",
         "  esplanade evaluate zara1.csv --policy esplanade straight",
         "  esplanade scene check my.json",

@@ -77,6 +77,13 @@ async def test_a_world_with_people_runs_again_bit_for_bit(
     told = capsys.readouterr()
     assert code == 0, told.err
     assert "all equal" in told.out
+    page = tmp_path / "out.html"
+    words = ["--set", "risk_weight=20", "--seeds", "2", "--report", str(page)]
+    code = await asyncio.to_thread(cli.main, ["replay", str(path), *words])
+    told = capsys.readouterr()
+    assert code == 0, told.err
+    assert "changed: risk_weight = 20." in told.out
+    assert "<h1>What if: risk_weight = 20</h1>" in page.read_text()
 
 
 async def test_a_killed_server_leaves_a_recording_up_to_its_last_second(

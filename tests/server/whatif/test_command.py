@@ -13,10 +13,18 @@ from typing import Any
 import pytest
 
 from esplanade import cli
+from esplanade.planning import Wall
 from esplanade.recordings import read_crowd
 from esplanade.server.recording import head
+from esplanade.server.recording.reader import Recording
+from esplanade.server.replay.replayed_zone import ReplayedZone
+from esplanade.server.roster import read_roster
+from esplanade.server.whatif.changes import Changes
+from esplanade.server.whatif.runner import run_all
+from esplanade.server.whatif.runs import Plan, run
+from esplanade.server.whatif.stretch import read_stretch
 from tests.patience import PATIENCE_S
-from tests.server.populated import spec
+from tests.server.populated import HALL, spec
 from tests.server.recording.recorded import record
 
 
@@ -47,12 +55,11 @@ def test_one_run_is_compared_and_says_that_nothing_is_known_of_chance(
     options = ("--from", "1", "--to", "11", "--set", "speed_mps=0.6", "--json", str(out))
     assert replay(recording, *options) == 0
     told = capsys.readouterr().out
-    assert "Changed: speed_mps = 0.6." in told
-    assert "From 1 s to 11 s of hall.mcap." in told
+    assert "from 1 s to 11 s of hall.mcap, changed: speed_mps = 0.6." in told
     assert "nothing is known of chance" in told
     assert "whatever actors do" in told
     figures = {each["name"]: each for each in json.loads(out.read_text())["figures"]}
-    assert figures["speed_mps"]["changed"] < 0.61 < figures["speed_mps"]["recorded"]
+    assert figures["speed_mps"]["changed"] < 0.61 < figures["speed_mps"]["unchanged"]
     assert "low" not in figures["speed_mps"]
     assert "displacement_m" not in figures
 
@@ -66,12 +73,13 @@ def test_seeds_give_intervals_and_one_page(
     assert replay(recording, *changed, *runs, "--report", str(page), "--json", str(out)) == 0
     told = capsys.readouterr().out
     assert "3 runs each" in told
+    assert "fewer than 10 seeds" in told
     found = json.loads(out.read_text())
     speed = next(each for each in found["figures"] if each["name"] == "speed_mps")
     assert speed["low"] <= speed["difference"] <= speed["high"] < 0.0
     assert speed["differs"]
     # Those recorded patrol, and draw nothing; the wanderers of the roster do.
-    assert len(set(speed["by_seed"]["recorded"])) == 1
+    assert len(set(speed["by_seed"]["unchanged"])) == 1
     assert len(set(speed["by_seed"]["changed"])) == 3
     assert len(found["strip"]["begins_s"]) == 8
     text = page.read_text()
@@ -80,6 +88,30 @@ def test_seeds_give_intervals_and_one_page(
     assert text.count("<svg") >= 8
     assert "src=" not in text
     assert "esplanade replay" in text
+
+
+@pytest.fixture(scope="module")
+def walled(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The hall with a wall more, in the eastern half."""
+    wall = Wall(start=(9.0, 3.0), end=(9.0, 8.0))
+    scene = HALL.model_copy(update={"name": "walled", "walls": (*HALL.walls, wall)})
+    path = tmp_path_factory.mktemp("scenes") / "walled.json"
+    path.write_text(scene.model_dump_json(exclude_none=True))
+    return path
+
+
+def test_another_scene_is_compared_with_a_new_beginning_in_the_own_one(
+    recording: Path, walled: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out, walks = tmp_path / "figures.json", tmp_path / "walks.csv"
+    options = ("--from", "1", "--scene", str(walled), "--json", str(out))
+    assert replay(recording, *options, "--trajectories", str(walks)) == 0
+    told = capsys.readouterr().out
+    assert "changed: scene walled." in told
+    assert "In both worlds actors begin anew" in told
+    apart = json.loads(out.read_text())["strip"]["apart_m"]
+    assert apart[0] < 0.2 < max(apart)
+    assert len(read_crowd(walks).tracks) == 5
 
 
 def test_people_who_react_are_told_of_with_what_is_imposed_on_them(
@@ -92,8 +124,21 @@ def test_people_who_react_are_told_of_with_what_is_imposed_on_them(
     assert "by a social force model" in told
     figures = {each["name"]: each for each in json.loads(out.read_text())["figures"]}
     for name in ("displacement_m", "delay_s"):
-        assert figures[name]["recorded"] == 0.0 <= figures[name]["changed"]
+        assert figures[name]["unchanged"] == 0.0 <= figures[name]["changed"]
     assert figures["displacement_m"]["changed"] > 0.0
+
+
+def test_processes_have_the_figures_of_this_one(recording: Path, roster: Path) -> None:
+    with Recording(recording) as opened, ReplayedZone(opened.head) as replayed:
+        first = opened.first_tick
+        stretch = read_stretch(opened, replayed, first, first + 100)
+        changes = Changes({"speed_mps": 0.6}, read_roster(roster))
+        plans = [Plan(changes, "reacting", seed) for seed in (1, 2)]
+        # This zone has run something else meanwhile.
+        here = [run(replayed, stretch, plan).figures for plan in reversed(plans)]
+        there = [each.figures for each in run_all(stretch, plans, 2, lambda: None)]
+    assert there == [pytest.approx(each, rel=0.0, abs=0.0, nan_ok=True) for each in here[::-1]]
+    assert there[0] != there[1]
 
 
 def test_the_changed_run_is_written(recording: Path, roster: Path, tmp_path: Path) -> None:
@@ -172,6 +217,21 @@ def test_options_that_do_not_fit_are_refused(
         replay(recording, *options)
     assert ended.value.code == 2
     assert text in capsys.readouterr().err
+
+
+def test_a_scene_that_is_too_small_or_lacks_a_place_is_refused(
+    recording: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "other.json"
+    path.write_text('{"name": "small", "bounds": [0, 0, 3, 3]}')
+    assert replay(recording, "--scene", str(path)) == 2
+    assert "people were recorded outside of its bounds" in capsys.readouterr().err
+    path.write_text('{"name": "bare", "bounds": [0, 0, 14, 9]}')
+    assert replay(recording, "--scene", str(path)) == 2
+    assert "no place named 'east'" in capsys.readouterr().err
+    path.write_text('{"name": "broken"}')
+    assert replay(recording, "--scene", str(path)) == 2
+    assert "bounds: is missing" in capsys.readouterr().err
 
 
 def test_a_broken_roster_is_named(
