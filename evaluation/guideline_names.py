@@ -15,4 +15,7 @@ GUIDELINES: Final = {
     "force_work": "work of social forces",
     "groups": "groups walked through",
     "stalled": "time without moving",
+    "delay": "delay imposed on people",
+    "peak_acceleration": "acceleration imposed on people",
+    "gave_way": "people who gave way",
 }

@@ -5,6 +5,7 @@ from typing import Final, NamedTuple
 
 from esplanade.evaluation.conduct import COLLISION_CAP_S, GROUP_M, GROUP_S, STALLED_MPS
 from esplanade.evaluation.guideline_names import GUIDELINES
+from esplanade.evaluation.people import GAVE_WAY_M
 from esplanade.evaluation.scores import Score
 
 
@@ -139,6 +140,31 @@ MEASURES: Final = {
             f"time in which the robot is slower than {STALLED_MPS:g} m/s",
             _FRANCIS,
             lambda s: s.stalled_s,
+        ),
+        Guideline(
+            "delay",
+            "s",
+            2,
+            "the sum over people of how late each is at most against the recorded timing; of "
+            "reacting people, as the next two",
+            "ours",
+            lambda s: s.imposed_delay_s,
+        ),
+        Guideline(
+            "peak_acceleration",
+            "m/s²",
+            2,
+            "the greatest acceleration of anybody beyond the recorded one",
+            "ours",
+            lambda s: s.imposed_peak_mps2,
+        ),
+        Guideline(
+            "gave_way",
+            "",
+            2,
+            f"people who are displaced by more than {GAVE_WAY_M:g} m",
+            "ours",
+            lambda s: s.gave_way,
         ),
     )
 }

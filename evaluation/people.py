@@ -1,7 +1,7 @@
 """The people of an episode: as they were recorded, or reacting to the robot."""
 
 from functools import lru_cache
-from typing import Protocol
+from typing import Final, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +13,8 @@ from esplanade.pedestrians import ReactingCrowd
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+
+GAVE_WAY_M: Final = 0.1
 
 
 class People(Protocol):
@@ -36,6 +38,22 @@ class People(Protocol):
     def past(self, pedestrian: int, tick: int, ticks: int) -> Floats: ...
 
 
+class Imposed(NamedTuple):
+    """What a robot has imposed on people until now, against their recording without it."""
+
+    displacement_m: float
+    """The sum over people of the greatest distance of each from the recorded place."""
+    imposed_delay_s: float
+    """The sum over people of how late each was at most against the recorded timing."""
+    imposed_peak_mps2: float
+    """The greatest acceleration of anybody beyond the recorded one."""
+    gave_way: int
+    """The number of people who were displaced by more than `GAVE_WAY_M`."""
+
+
+NOTHING_IMPOSED: Final = Imposed(0.0, 0.0, 0.0, 0)
+
+
 class ReactingPeople:
     """People who were recorded, and react to the robot from the beginning of an episode on.
 
@@ -49,6 +67,11 @@ class ReactingPeople:
         self._stand_in = -1 if episode.reverse else episode.pedestrian
         self._walked: dict[int, Floats] = {}
         """The trajectories of those who have left their recorded places."""
+        people = len(replay.ids)
+        self._late_s = np.zeros(people)
+        self._peak_mps2 = np.zeros(people)
+        self._offsets: tuple[Floats, Floats] = np.zeros((people, 2)), np.zeros((people, 2))
+        """Everybody's places from the recorded ones, a tick ago and two ticks ago."""
 
     @property
     def first(self) -> Ints:
@@ -59,9 +82,15 @@ class ReactingPeople:
         return self._replay.last
 
     @property
-    def displacement_m(self) -> float:
-        """The sum over people of how far each has been from the recorded place at most, metres."""
-        return float(self._walk.displacement_m.sum())
+    def imposed(self) -> Imposed:
+        """What the robot has imposed on the people who were not left out."""
+        displacement_m = self._walk.displacement_m
+        return Imposed(
+            float(displacement_m.sum()),
+            float(self._late_s.sum()),
+            float(self._peak_mps2.max(initial=0.0)),
+            int((displacement_m > GAVE_WAY_M).sum()),
+        )
 
     def present(self, tick: int) -> Ints:
         """The pedestrians who are present at a tick, in ascending order."""
@@ -90,11 +119,13 @@ class ReactingPeople:
     def leave_out(self, pedestrian: int) -> None:
         """Take somebody out of the episode: nobody reacts to that person any more."""
         self._walk.leave_out(pedestrian)
+        self._late_s[pedestrian] = self._peak_mps2[pedestrian] = 0.0
 
     def step(self, position: Floats, velocity: Floats, radius_m: float) -> None:
         """Walk for one tick beside the robot at `position`, which goes at `velocity`, both (2,)."""
         self._walk.step([[*position, *velocity, radius_m]], [self._stand_in])
         walk = self._walk
+        self._keep_imposed()
         differs = (walk.positions != walk.recorded).any(axis=1)
         for pedestrian, place, moved in zip(
             walk.present.tolist(), walk.positions, differs.tolist(), strict=True
@@ -104,6 +135,17 @@ class ReactingPeople:
             if pedestrian in self._walked:
                 here = walk.tick - int(self.first[pedestrian])
                 self._walked[pedestrian][here] = place
+
+    def _keep_imposed(self) -> None:
+        """Keep how late people are, and what they accelerate beyond the recording."""
+        walk, here = self._walk, self._walk.present
+        self._late_s[here] = np.maximum(self._late_s[here], walk.late_s)
+        latest, before = self._offsets
+        now = np.zeros_like(latest)
+        now[here] = walk.positions - walk.recorded
+        beyond = (now - 2.0 * latest + before)[here] / self._replay.tick_s**2
+        self._peak_mps2[here] = np.maximum(self._peak_mps2[here], np.hypot(*beyond.T))
+        self._offsets = now, latest
 
 
 @lru_cache(maxsize=8)

@@ -57,6 +57,10 @@ class Score:
     groups_entered: float = math.nan
     force_work_mps: float = math.nan
     stalled_s: float = math.nan
+    imposed_delay_s: float = 0.0
+    imposed_peak_mps2: float = 0.0
+    gave_way: int = 0
+    """Of these three `esplanade.evaluation.people.Imposed` says more."""
     fault: str = ""
     """How the policy failed in the middle of the episode; empty if it did not."""
 

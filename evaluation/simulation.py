@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from esplanade.evaluation.conduct import Conduct
 from esplanade.evaluation.contacts import ContactMonitor
 from esplanade.evaluation.episodes import Episode
-from esplanade.evaluation.people import People, ReactingPeople
+from esplanade.evaluation.people import NOTHING_IMPOSED, People, ReactingPeople
 from esplanade.evaluation.policies.policy import Observation, Person, Policy, Prescient, Task
 from esplanade.evaluation.replay import Replay
 from esplanade.evaluation.rules import Rules
@@ -110,8 +110,8 @@ def run_episode(
         replay, rules, episode, contacts, sensor.pop_ins, walked,
         np.array(velocities[1:]).reshape(-1, 2), wall_m, reached, decide_s,
     )  # fmt: skip
-    imposed_m = 0.0 if reacting is None else reacting.displacement_m
-    result = replace(result, fault=fault, displacement_m=imposed_m, **asdict(conduct.figures()))
+    imposed = NOTHING_IMPOSED if reacting is None else reacting.imposed
+    result = replace(result, fault=fault, **imposed._asdict(), **asdict(conduct.figures()))
     return EpisodeResult(result, walked, everyone)
 
 

