@@ -48,12 +48,14 @@ PACKAGES: Final = {
 }
 """The peers, and the package that each needs."""
 
+PAGE_WIDTH: Final = 200
+"""Columns of a table in a file or a pipe."""
 BESIDE: Final = Path(__file__).parents[2] / "shared" / "data"
 
 
 def main(argv: Sequence[str] | None = None) -> int:
     options = parser().parse_args(argv)
-    console = Console()
+    console = Console(width=None if sys.stdout.isatty() else PAGE_WIDTH)
     sources = [Source(path) for path in options.recordings or recordings()]
     if not sources:
         sys.exit("there is no recording: set ESPLANADE_RECORDINGS to the folder of crowds/*.csv")

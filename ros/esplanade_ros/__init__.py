@@ -1,0 +1,1 @@
+"""A bridge from an Esplanade world to ROS 2."""
