@@ -21,7 +21,7 @@ unexport PYTHONDONTWRITEBYTECODE
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .PHONY: help serve test test-boundscheck test-nojit fuzz-files test-lowest test-pythons test-base
-.PHONY: check docs study release-check audit bench chaos chaos-cluster cluster format lock client clean
+.PHONY: check docs study release release-check audit bench chaos chaos-cluster cluster format lock client clean
 
 help:  ## show what there is to do
 	@echo "Esplanade: people and computer-run actors walk among each other."
@@ -61,6 +61,9 @@ test-pythons: $(VENV)/.test  ## run an installed wheel on every Python that ther
 
 test-base: $(VENV)/.test  ## run an installed wheel without any extra: every command and reader
 	$(RUN) -m tools.base
+
+release: $(VENV)/.test $(CLIENT) client_web/node_modules/.installed  ## make a release ready up to its upload; VERSION=…
+	@$(RUN) -m tools.release $(VERSION)
 
 audit: $(VENV)/.test  ## ask for known faults of what uv.lock names
 	$(RUN) -m tools.audit
