@@ -3,15 +3,12 @@
 from typing import Any, Final, Protocol
 
 from esplanade.protocol.commands import CommandFault
+from esplanade.server.recording.errors import NotRecordedError
 
 RECORDING: Final = "recording"
 """The subject that the recording of the world is."""
 RECORDED: Final = "recorded"
 """Its field: whether the world is recorded."""
-
-
-class RecordingError(Exception):
-    """The world cannot be recorded; the message says why."""
 
 
 class Recorder(Protocol):
@@ -26,7 +23,7 @@ class Recorder(Protocol):
 
         Raises
         ------
-        RecordingError
+        NotRecordedError
             No file can be written.
         """
 
@@ -38,6 +35,6 @@ async def switched(recorder: Recorder, *, on: bool) -> list[CommandFault]:
     """Begin or end a recording; the fault, if it cannot be."""
     try:
         await recorder.switch(on=on)
-    except RecordingError as error:
+    except NotRecordedError as error:
         return [CommandFault(code="not_recorded", text=str(error))]
     return []

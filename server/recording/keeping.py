@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Any
 import structlog
 
 from esplanade.recordings.writing import WritingError
-from esplanade.server.console.recording import RecordingError
 from esplanade.server.file_thread import Ended
 from esplanade.server.live.bulletin import Bulletin
 from esplanade.server.loading import LoadingError
 from esplanade.server.metrics import Metrics
+from esplanade.server.recording.errors import NotRecordedError
 from esplanade.server.settings import ServerSettings
 from esplanade.server.trajectories.writer import free_path
 from esplanade.server.world.frame import Frame
@@ -72,7 +72,7 @@ class ZoneRecorder:
 
         Raises
         ------
-        RecordingError
+        NotRecordedError
             The file cannot be written.
         """
         if on == self.is_on:
@@ -118,7 +118,7 @@ class ZoneRecorder:
             from esplanade.server.recording.zone_recording import ZoneRecording  # noqa: PLC0415
         except ModuleNotFoundError as error:
             package = (error.name or "").partition(".")[0]
-            raise RecordingError(f"it needs {package}: install esplanade[record]") from None
+            raise NotRecordedError(f"it needs {package}: install esplanade[record]") from None
         settings, zone = self._settings, self._zone
         path = free_path(self._folder / f"{_as_file(self._name or zone.scene.name)}.mcap")
 
@@ -153,9 +153,9 @@ class ZoneRecorder:
                 ),
             )
         except OSError as error:
-            raise RecordingError(f"{path}: {error.strerror or error}") from None
+            raise NotRecordedError(f"{path}: {error.strerror or error}") from None
         except WritingError as error:
-            raise RecordingError(str(error)) from None
+            raise NotRecordedError(str(error)) from None
 
 
 @asynccontextmanager
@@ -176,7 +176,7 @@ async def recorder_of(
     if not settings.record_later:
         try:
             await recorder.switch(on=True)
-        except RecordingError as error:
+        except NotRecordedError as error:
             raise LoadingError(f"record: {error}") from None
     _watch(recorder, metrics)
     try:
