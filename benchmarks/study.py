@@ -17,12 +17,15 @@ Without named recordings it takes the `.csv` files in `crowds/` of the folder th
 import argparse
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack, contextmanager
 from dataclasses import replace
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Final
 
+from benchmarks._detour_policy import detour
+from benchmarks._node_process import recast_missing
 from rich.console import Console
 
 from esplanade.commandline.progress import progress
@@ -48,7 +51,7 @@ PACKAGES: Final = {
 }
 """The peers, and the package that each needs."""
 
-PAGE_WIDTH: Final = 200
+PAGE_WIDTH: Final = 260
 """Columns of a table in a file or a pipe."""
 BESIDE: Final = Path(__file__).parents[2] / "shared" / "data"
 
@@ -59,19 +62,20 @@ def main(argv: Sequence[str] | None = None) -> int:
     sources = [Source(path) for path in options.recordings or recordings()]
     if not sources:
         sys.exit("there is no recording: set ESPLANADE_RECORDINGS to the folder of crowds/*.csv")
+    shown: list[Table] = []
+    claim: list[str] = []
     try:
-        shown = []
-        for people in options.people:
-            results = walked(sources, options, people)
-            shown += compared(results, options.seed, people)
-            if people == "reacting":
-                claim = claimed(results, options.seed)
+        with policies(options.policy) as chosen:
+            for people in options.people:
+                results = walked(sources, chosen, options, people)
+                shown += compared(results, options.seed, people)
+                if people == "reacting":
+                    claim = claimed(results, options.seed)
     except (PolicyError, RecordingError, ScoreCacheError) as error:
         sys.exit(f"{error}")
     report.show(console, shown)
-    if "reacting" in options.people:
-        for line in claim:
-            console.print(line, highlight=False)
+    for line in claim:
+        console.print(line, highlight=False)
     if options.report is not None:
         report_files.write(options.report, shown, "python -m benchmarks.study")
     return 0
@@ -84,7 +88,9 @@ def parser() -> argparse.ArgumentParser:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     made.add_argument("recordings", metavar="CROWD", nargs="*", type=Path)
-    made.add_argument("--policy", nargs="+", default=peers(), help="peers [default: all]")
+    made.add_argument(
+        "--policy", nargs="+", help="peers [default: all that are installed, detour among them]"
+    )
     made.add_argument(
         "--people", nargs="+", default=["recorded", "reacting"], choices=["recorded", "reacting"]
     )
@@ -96,9 +102,21 @@ def parser() -> argparse.ArgumentParser:
     return made
 
 
-def peers() -> list[str]:
-    """The peers whose packages are installed."""
-    return [name for name, package in PACKAGES.items() if package is None or find_spec(package)]
+@contextmanager
+def policies(named: Sequence[str] | None) -> Iterator[list[str]]:
+    """Our actor and the peers that are named, or else all that are installed, with DetourCrowd."""
+    if named is not None:
+        yield list(dict.fromkeys([OURS, *named]))
+        return
+    found = [name for name, package in PACKAGES.items() if package is None or find_spec(package)]
+    for name in PACKAGES.keys() - found:
+        print(f"left out: {name} needs the package {PACKAGES[name]}", file=sys.stderr)
+    with ExitStack() as stack:
+        if (missing := recast_missing()) is None:
+            found.append(stack.enter_context(detour()))
+        else:
+            print(f"left out: detour. {missing}", file=sys.stderr)
+        yield [OURS, *found]
 
 
 def recordings() -> list[Path]:
@@ -113,14 +131,13 @@ def place_of(source: Source) -> str:
 
 
 def walked(
-    sources: Sequence[Source], options: argparse.Namespace, people: str
+    sources: Sequence[Source], chosen: Sequence[str], options: argparse.Namespace, people: str
 ) -> list[TrialResult]:
     """All episodes of our actor and its peers among such people."""
     rules = Rules()
     if people == "reacting":
         rules = replace(rules, people="reacting", people_seed=options.seed)
-    policies = list(dict.fromkeys([OURS, *options.policy]))
-    trials = plan_trials(sources, policies, rules, options.episodes, options.seed, {})
+    trials = plan_trials(sources, chosen, rules, options.episodes, options.seed, {})
     with ScoreCache(options.score_cache) as score_cache, progress(time_left=True) as bar:
         total = sum(len(trial.episodes) for trial in trials)
         task = bar.add_task(f"among {people} people", total=total)

@@ -4,8 +4,12 @@ from pathlib import Path
 
 import pytest
 from benchmarks import study
+from benchmarks._detour_policy import detour
+from benchmarks._node_process import recast_missing
 
-from tests.evaluation.worlds import busy_plaza, write_csv
+from esplanade.evaluation.runner import run_trials
+from esplanade.evaluation.trials import Source, plan_trials
+from tests.evaluation.worlds import RULES, busy_plaza, write_csv
 
 
 def test_it_compares_on_all_recordings_and_without_each_place(
@@ -26,6 +30,17 @@ def test_it_compares_on_all_recordings_and_without_each_place(
         assert f"displacement imposed by esplanade, {where}: " in told
     assert "so that esplanade imposes least" in told
     assert "all together, reacting people" in report.read_text()
+
+
+@pytest.mark.skipif(recast_missing() is not None, reason=str(recast_missing()))
+def test_the_crowd_of_detour_is_a_policy(tmp_path: Path) -> None:
+    source = Source(write_csv(tmp_path, busy_plaza()))
+    with detour() as name:
+        assert name.endswith("/detour")
+        trials = plan_trials([source], [name], RULES, 4, 0, {})
+        (result,) = run_trials(trials, 1, lambda _: None)
+    assert [score.fault for score in result.scores] == [""] * 4
+    assert all(score.reached for score in result.scores)
 
 
 def test_without_recordings_it_says_what_to_do(
