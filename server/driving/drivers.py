@@ -123,9 +123,10 @@ class Drivers:
 
     def _ask_where(self, actor_id: str, driven: _Driven) -> None:
         place = self._sights.place(actor_id)
+        task = None if driven.came else self._sights.task(actor_id, place)
         seen = self._sights.observation(actor_id, place, self._zone.tick)
         driven.came = True
-        driven.answer = self._threads.submit(_goal, driven.policy, seen, place[2])
+        driven.answer = self._threads.submit(_goal, driven.policy, task, seen, place[2])
 
     def drain(self) -> list[Input]:
         """The velocities of all driven actors in the next tick, and their new goals."""
@@ -164,7 +165,7 @@ class Drivers:
                 return [SendActors(NO_COMMAND, (actor_id,), decided.goal)]
         except (PolicyError, PolicyFaultError) as fault:
             self._faults += 1
-            driven.velocity, driven.goal = _STAND, None
+            driven.velocity, driven.goal, driven.came = _STAND, None, False
             driven.ready_tick = self._zone.tick + round(REST_S / self._zone.tick_s)
             log.warning(
                 "a policy failed",
@@ -197,9 +198,13 @@ def _velocity(policy: AskedPolicy, task: Task | None, seen: Observation) -> _Dec
     return _Decision(velocity=(x, y))
 
 
-def _goal(policy: AskedPolicy, seen: Observation, z_m: float) -> _Decision:
-    """Ask a policy where to go, in a thread; without a height on the floor of that height."""
-    policy.start()
+def _goal(policy: AskedPolicy, task: Task | None, seen: Observation, z_m: float) -> _Decision:
+    """Ask a policy where to go, in a thread; without a height on the floor of that height.
+
+    One that has just begun is told of a trip to where it stands, so that it knows its surroundings.
+    """
+    if task is not None:
+        policy.reset(task)
     found = policy.goal(seen)
     if found is None:
         return _Decision()
