@@ -244,12 +244,12 @@ class Population:
             self._held.discard(actor_id)
             self.table.trips.ask_at_s[row] = -np.inf
 
-    def steer(self, velocities: Mapping[Hashable, tuple[float, float]] | None) -> None:
+    def steer(self, velocities: Mapping[Hashable, tuple[float, float]]) -> None:
         """Let some actors go at these velocities, m/s, in the next tick, instead of planning.
 
-        Those who are not there by then, or held, plan as ever. None lets all plan.
+        Those who are not there by then, or held, plan as ever.
         """
-        self._steered = {} if velocities is None else {**self._steered, **velocities}
+        self._steered = dict(velocities)
 
     def held(self, actor_id: Hashable) -> bool:
         """Whether an actor is held."""
@@ -438,7 +438,10 @@ class Population:
             for who, velocity in self._steered.items()
             if who in self.table and who not in self._held
         }
-        self.navigator.advance(steered)
+        if steered:
+            self.navigator.advance(steered)
+        else:
+            self.navigator.advance()
         self._keep_account(before)
 
     def _ask(

@@ -40,6 +40,8 @@ class ActorAvatars:
         self._version = 0
         self.pointing: dict[int, Point] = {}
         """The places that actors point at just now, by their avatars' ids."""
+        self.steered: dict[Hashable, tuple[float, float]] = {}
+        """The velocities, m/s, of actors that do not plan in this tick, by the actors' ids."""
 
     @property
     def trips(self) -> int:
@@ -59,6 +61,8 @@ class ActorAvatars:
         """The next tick of all actors, if there are any. Heavy: touches only the population."""
         if not len(self._population):
             return False
+        if self.steered:
+            self._population.steer(self.steered)
         self._population.advance(people)
         return True
 
@@ -202,8 +206,7 @@ class ActorAvatars:
             case PlanEvery():
                 self._population.navigator.planning_interval.ticks = item.ticks
             case SteerActors():
-                steered = zip(item.actors, item.velocities_mps, strict=True)
-                self._population.steer(dict(steered))
+                self.steered |= zip(item.actors, item.velocities_mps, strict=True)
 
     def stand(self, people: ObservedPeople) -> None:
         """A tick in which nothing is planned."""

@@ -496,7 +496,7 @@ class Zone:
     def _begin_frame(self) -> None:
         self._persons.begin_frame()
         self._stands = self._still = False
-        self._population.steer(None)
+        self._actors.steered = {}
         self._commands.begin()
 
     def _take(self, item: Input) -> None:
