@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from esplanade.evaluation.policies.policy import Person
 from esplanade.evaluation.rules import Rules
+from esplanade.pedestrians.compiled._force_kernels import evasion
 from esplanade.pedestrians.model import SocialForce
 
 Floats = NDArray[np.float64]
@@ -26,7 +27,8 @@ GROUP_S: Final = 2.0
 """Two people are a group who have been within `GROUP_M` of each other for so long."""
 FORCES_WITHIN_M: Final = 5.0
 STALLED_MPS: Final = 0.1
-_FORCE: Final = SocialForce()
+_MODEL: Final = SocialForce(unseen=1.0)
+_NUMBERS: Final = _MODEL.numbers(tick_s=1.0)
 
 
 @dataclass(frozen=True)
@@ -60,7 +62,7 @@ class Conduct:
         if not people:
             return
         offsets = np.array([person.position for person in people]) - position
-        moving = np.array([_velocity(person, tick_s) for person in people])
+        moving = np.array([person.velocity(tick_s) for person in people])
         away = np.hypot(*offsets.T)
         until_s = collisions(offsets, moving - velocity, self._rules.contact_m)
         self._collision_s = min(self._collision_s, float(until_s.min()))
@@ -70,8 +72,9 @@ class Conduct:
         if zone < len(ends):
             self._zones_s[zone] += tick_s
         near = away < FORCES_WITHIN_M
-        on_robot = forces(offsets[near], velocity, moving[near]).sum(axis=0)
-        on_people = forces(-offsets[near], moving[near], velocity)
+        own = np.broadcast_to(velocity, moving[near].shape)
+        on_robot = forces(offsets[near], own, moving[near]).sum(axis=0)
+        on_people = forces(-offsets[near], moving[near], own)
         both = float(np.hypot(*on_robot)) + float(np.hypot(*on_people.T).sum())
         self._work_mps += tick_s * both
         close = [person for person, far in zip(people, away, strict=True) if far < GROUP_M]
@@ -108,22 +111,15 @@ def collisions(offsets: Floats, velocities: Floats, contact_m: float) -> Floats:
 def forces(offsets: Floats, own: Floats, others: Floats) -> Floats:
     """The social forces on bodies by bodies at `offsets` (n, 2) from them, float64 (n, 2), m/s².
 
-    `own` and `others` are the velocities, (2,) or (n, 2). Moussaïd et al. 2009, eqs. 5 and 6.
+    `own` and `others` are their velocities, (n, 2). They are the evasions of people who react, to
+    all sides alike.
     """
-    away = np.maximum(1e-6, np.hypot(*offsets.T))
-    toward = offsets / away[:, None]
-    interaction = _FORCE.velocity_share_s * (own - others) + toward
-    strength = np.maximum(1e-6, np.hypot(*interaction.T))
-    ahead = interaction / strength[:, None]
-    reach_m = _FORCE.reach_m * strength
-    side = ahead[:, 0] * toward[:, 1] - ahead[:, 1] * toward[:, 0]
-    angle = np.arctan2(side, (ahead * toward).sum(axis=1)) + _FORCE.side_bias * reach_m
-    push = _FORCE.strength_mps2 * np.exp(-away / reach_m)
-    slows = push * np.exp(-((_FORCE.slowing * reach_m * angle) ** 2))
-    turns = push * np.exp(-((_FORCE.turning * reach_m * angle) ** 2))
-    turns *= np.where(angle < 0.0, -1.0, 1.0)
-    left = np.stack([-ahead[:, 1], ahead[:, 0]], axis=1)
-    return np.asarray(-slows[:, None] * ahead - turns[:, None] * left)
+    rows = np.concatenate([offsets, own, others], axis=1).tolist()
+    found = [
+        evasion(x, y, vx, vy, other_vx, other_vy, 0.0, _NUMBERS)
+        for x, y, vx, vy, other_vx, other_vy in rows
+    ]
+    return _MODEL.strength_mps2 * np.array(found).reshape(-1, 2)
 
 
 def groups_around(people: Sequence[Person], position: Floats, rules: Rules) -> set[tuple[int, int]]:
@@ -147,9 +143,3 @@ def _between(one: Person, other: Person, position: Floats, radius_m: float) -> b
     share = float(offset @ along) / length_m**2
     aside_m = abs(along[0] * offset[1] - along[1] * offset[0]) / length_m
     return bool(0.0 < share < 1.0 and aside_m < radius_m)
-
-
-def _velocity(person: Person, tick_s: float) -> Floats:
-    if len(person.track) < 2:
-        return np.zeros(2)
-    return np.asarray((person.track[-1] - person.track[-2]) / tick_s)

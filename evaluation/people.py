@@ -39,7 +39,7 @@ class People(Protocol):
 
 
 class Imposed(NamedTuple):
-    """What a robot has imposed on people until now, against their recording without it."""
+    """The burden of a robot on people until now, against their recording without it."""
 
     displacement_m: float
     """The sum over people of the greatest distance of each from the recorded place."""
@@ -83,7 +83,7 @@ class ReactingPeople:
 
     @property
     def imposed(self) -> Imposed:
-        """What the robot has imposed on the people who were not left out."""
+        """The burden of the robot on the people who were not left out."""
         displacement_m = self._walk.displacement_m
         return Imposed(
             float(displacement_m.sum()),

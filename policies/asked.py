@@ -58,9 +58,13 @@ class AskedPolicy:
         load = {"ask": "load", "policy": place_of(self._name), "options": self._options}
         try:
             told = self._ask(load, STARTS_WITHIN_S).get("decides", DECISIONS[:1])
-            self.decides = frozenset(told if isinstance(told, list | tuple) else ())
         except PolicyFaultError as fault:
             raise PolicyError(f"--policy {self._name}: {fault}") from None
+        named = told if isinstance(told, list | tuple) else ()
+        self.decides = frozenset(name for name in DECISIONS if name in named)
+        if not self.decides:
+            self.close()
+            raise PolicyError(f"--policy {self._name}: it decides none of {', '.join(DECISIONS)}")
 
     def _opened(self) -> PolicyLine:
         address = address_of(self._name)

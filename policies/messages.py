@@ -23,7 +23,7 @@ import numpy as np
 from esplanade.policies.interface import Floats, Observation, Person, Task
 
 DECISIONS: Final = ("velocity", "goal")
-"""What a policy may decide; one that does not say decides velocities."""
+"""The decisions that policies make; one that does not say makes those of velocities."""
 LONGEST_ANSWER: Final = 1 << 20
 """Bytes of a line. A longer answer is a fault."""
 

@@ -1,4 +1,4 @@
-"""What the site of `make docs` has beside the pages of docs/: a first page and the reference.
+"""Parts of the site of `make docs` beside the pages of docs/: a first page and the reference.
 
 MkDocs calls the functions `on_…` by their names.
 """

@@ -13,7 +13,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from esplanade.evaluation.policies.policy import Observation, Person, Policy, Task
+from esplanade.evaluation.policies.policy import Observation, Policy, Task
 from esplanade.policies.errors import PolicyError
 
 Floats = NDArray[np.float64]
@@ -102,7 +102,7 @@ class JuPedSim(Policy):
             observation.people, key=lambda p: float(np.hypot(*(p.position - observation.position)))
         ):
             if np.hypot(*(person.position - observation.position)) < SEEN_M:
-                velocity = _velocity(person, rules.tick_s)
+                velocity = person.velocity(rules.tick_s)
                 add(
                     person.position,
                     velocity,
@@ -159,9 +159,3 @@ def _without_velocity(parameters: Callable[..., Any]) -> Callable[..., Any]:
 
 def _point(values: Floats) -> tuple[float, float]:
     return float(values[0]), float(values[1])
-
-
-def _velocity(person: Person, tick_s: float) -> Floats:
-    if len(person.track) < 2:
-        return np.zeros(2)
-    return np.asarray((person.track[-1] - person.track[-2]) / tick_s)

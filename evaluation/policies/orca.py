@@ -60,11 +60,8 @@ class Orca(Policy):
         made.set_agent_pref_velocity(robot, _point(self._wish(observation)))
         for person in observation.people:
             if np.hypot(*(person.position - observation.position)) < SEEN_M:
-                moved = (
-                    person.track[-1] - person.track[-2] if len(person.track) > 1 else np.zeros(2)
-                )
                 other = made.add_agent(_point(person.position))
-                made.set_agent_velocity(other, _point(moved / rules.tick_s))
+                made.set_agent_velocity(other, _point(person.velocity(rules.tick_s)))
         made.do_step()
         return np.array(made.get_agent_velocity(robot).to_tuple())
 

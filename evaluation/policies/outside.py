@@ -68,6 +68,5 @@ class Outside(inside.Policy):
     def _seen(self, person: inside.Person) -> Person:
         """A person, by a number that tells nothing of when the recording has them."""
         number = self._numbers.setdefault(person.id, len(self._numbers) + 1)
-        track, tick_s = person.track, self._rules.tick_s
-        moved = track[-1] - track[-2] if len(track) > 1 else np.zeros(2)
-        return Person(number, track[-1], moved / tick_s, self._rules.person_radius_m, track)
+        velocity, radius_m = person.velocity(self._rules.tick_s), self._rules.person_radius_m
+        return Person(number, person.position, velocity, radius_m, person.track)

@@ -31,6 +31,12 @@ class Person:
     def position(self) -> Floats:
         return np.asarray(self.track[-1])
 
+    def velocity(self, tick_s: float) -> Floats:
+        """The velocity over the last tick, (2,) m/s; zero for somebody who has just come."""
+        if len(self.track) < 2:
+            return np.zeros(2)
+        return np.asarray((self.track[-1] - self.track[-2]) / tick_s)
+
 
 @dataclass(frozen=True)
 class Observation:

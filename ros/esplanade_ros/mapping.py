@@ -45,7 +45,7 @@ def header(time_s: float) -> Plain:
 
 
 def pose(avatar: Avatar, above_m: float = 0.0) -> Plain:
-    """Where an avatar stands, or a place above its feet, and which way it faces."""
+    """The place of an avatar's feet, or one above them, and the way it faces."""
     return {
         "position": {"x": avatar.x, "y": avatar.y, "z": avatar.z + above_m},
         "orientation": turned(avatar.heading),

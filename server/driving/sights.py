@@ -1,4 +1,4 @@
-"""What a policy is told of a served zone: its trip, and what its actor sees at a tick."""
+"""The view that a policy has of a served zone: its trip, and its actor's sight at a tick."""
 
 from typing import Final
 
@@ -15,14 +15,18 @@ from esplanade.server.world.zone import Zone
 
 SEEN_M: Final = 15.0
 """As in episodes of `esplanade evaluate`."""
+MOST_SEEN: Final = 24
+"""So many others are told, the nearest ones: with their past they are a message of some 30 kB."""
 
 
 class Sights:
     """Tells policies of a zone. Ask it between two ticks only."""
 
-    def __init__(self, zone: Zone) -> None:
+    def __init__(self, zone: Zone, every_s: float) -> None:
+        """`every_s` is the time from one sight to the next, seconds."""
         self._zone = zone
-        self.tracks = Tracks(zone.state, zone.tick_s)
+        self._every_s = every_s
+        self.tracks = Tracks(zone.state, every_s)
 
     def task(self, actor_id: str, goal: Point) -> Task:
         """The trip of an actor from where it is to a goal."""
@@ -30,7 +34,7 @@ class Sights:
         x, y, z_m = self.place(actor_id)
         x0, y0, x1, y1 = self._zone.grid.bounds
         return Task(
-            tick_s=self._zone.tick_s,
+            tick_s=self._every_s,
             start=np.array([x, y]),
             goal=np.array(goal[:2]),
             goal_tolerance=parameters.goal_tolerance_m,
@@ -48,17 +52,19 @@ class Sights:
         own = state.slot(self._avatar(actor_id))
         here = state.positions[own]
         live = state.live()
-        near = np.hypot(*(state.positions[live] - here).T) <= SEEN_M
+        away = np.hypot(*(state.positions[live] - here).T)
+        near = (away <= SEEN_M) & (live != own)
         near &= np.abs(state.heights[live] - state.heights[own]) < SAME_FLOOR_M
+        nearest = live[near][np.argsort(away[near], kind="stable")[:MOST_SEEN]]
         track = self.tracks.of(own)
         waypoint = zone.waypoint(actor_id) or goal[:2]
         return Observation(
             (zone.tick - begun_tick) * zone.tick_s,
             here.copy(),
-            _velocity(track, zone.tick_s),
+            _velocity(track, self._every_s),
             np.array(goal[:2]),
             np.array(waypoint[:2]),
-            [self._person(slot) for slot in live[near].tolist() if slot != own],
+            [self._person(slot) for slot in nearest.tolist()],
         )
 
     def is_there(self, actor_id: str) -> bool:
@@ -81,7 +87,7 @@ class Sights:
 
     def _person(self, slot: int) -> Person:
         state, track = self._zone.state, self.tracks.of(slot)
-        velocity = _velocity(track, self._zone.tick_s)
+        velocity = _velocity(track, self._every_s)
         return Person(int(state.ids[slot]), track[-1], velocity, float(state.radii[slot]), track)
 
     def _avatar(self, actor_id: str) -> int:

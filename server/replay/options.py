@@ -84,7 +84,7 @@ def parser() -> Parser:
 
 
 def _add_what_if(made: Parser) -> None:
-    group = made.add_argument_group("what if something is changed")
+    group = made.add_argument_group("something changed")
     group.add_argument(
         "--set",
         metavar="NAME=VALUE",

@@ -80,7 +80,7 @@ def _head(recording: Recording, zone: Zone, options: Namespace) -> Head:
 
 
 def _changed(options: Namespace) -> dict[str, str]:
-    """What was changed, if anything was, in the words of the command line."""
+    """The changes, if there are any, in the words of the command line."""
     given = [*options.set, *options.door]
     if options.roster is not None:
         given.append(f"the roster {options.roster.name}")

@@ -1,4 +1,4 @@
-"""What is other in a fork than in its recording, as options say it, checked by the models."""
+"""The changes of a fork against its recording, as options say them, checked by the models."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field

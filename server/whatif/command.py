@@ -1,4 +1,4 @@
-"""What `esplanade replay` does when something is to be changed."""
+"""The work of `esplanade replay` when something is to be changed."""
 
 import os
 import shlex
@@ -70,7 +70,7 @@ def _runs(
 ) -> tuple[Stretch, list[Run], list[Run]]:
     """The stretch, and its runs as recorded and changed."""
     first, last = bounds(recording, options)
-    # What begins anew in another scene is compared with what begins anew in the recorded one.
+    # A world that begins anew in another scene is compared with one that does in the recorded one.
     nothing = Changes(scene=None if changes.scene is None else recording.head.scene)
     seeds = [None] if options.seeds is None else list(range(1, options.seeds + 1))
     plans = [Plan(each, options.people, seed) for seed in seeds for each in (nothing, changes)]

@@ -37,7 +37,7 @@ class Row:
 
 @dataclass(frozen=True)
 class Strip:
-    """How far a change carries a world away, piece by piece of the stretch."""
+    """The distance to which a change carries a world, piece by piece of the stretch."""
 
     begins_s: Floats
     """(P,): where each piece begins, seconds after the beginning of the stretch."""

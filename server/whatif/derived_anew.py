@@ -1,4 +1,4 @@
-"""What a fork derives from its own ground, where it is not what the recording had derived.
+"""The results that a fork derives from its own ground, where the recording's are others.
 
 In a server that comes from a thread, whenever it is ready. In a fork the tick is fixed by rule:
 
@@ -20,7 +20,7 @@ from esplanade.server.world.zone import Zone
 AFTER_S: Final = 0.25
 """Time from when something is wanted, that the recording has not, until it takes effect."""
 WAITS_S: Final = 2.0
-"""What the recording has is waited for so long; servers without much to do are quicker."""
+"""A fork waits so long for what the recording has; servers without much to do are quicker."""
 KINDS: Final = frozenset({"door_derived", "potential_derived", "actors_derived"})
 """Inputs of recordings that were derived beside the ticks."""
 
@@ -50,7 +50,7 @@ class DerivedAnew:
         return plain.get("name") not in self._own_doors and _what(plain) in self._wanted()
 
     def inputs(self, tick: int, *, is_free: bool) -> list[Input]:
-        """What is derived for a tick, at most one thing, and nothing if the tick is not free."""
+        """The result derived for a tick, at most one, and none if the tick is not free."""
         wanted = self._wanted()
         self._since = {each: self._since.get(each, tick) for each in wanted}
         if not is_free:

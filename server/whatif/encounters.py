@@ -15,7 +15,7 @@ _HINDERED = (int(Reason.GIVING_WAY), int(Reason.WAITING))
 
 
 class Encounters:
-    """What happened between actors and people since it was made; `take` takes in each tick."""
+    """The encounters of actors and people since it was made; `take` takes in each tick."""
 
     def __init__(self, zone: Zone) -> None:
         self._zone = zone

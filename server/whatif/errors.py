@@ -2,4 +2,4 @@
 
 
 class WhatIfError(ValueError):
-    """What is to be changed cannot be, or the stretch is empty; the message says why."""
+    """A change cannot be made, or the stretch is empty; the message says why."""

@@ -81,7 +81,7 @@ class ForkInputs:
         return found
 
     def _command(self, plain: Mapping[str, Any]) -> list[Input]:
-        """What is left of a command on actors; of recorded actors that are not there, doors."""
+        """The rest of a command on actors; of recorded actors that are not there, doors."""
         item = input_of(plain, self._zone)
         if self._changes.roster is not None:
             return list(self._doors(item.doors)) if isinstance(item, Batch) else []
@@ -107,7 +107,7 @@ class ForkInputs:
         return [item] if isinstance(item, Join) else []
 
     def _parameters(self, item: SetParameters) -> list[Input]:
-        """What is set by the fork stays as it is."""
+        """Values that the fork sets stay as they are."""
         left = {n: v for n, v in item.values.items() if n not in self._changes.values}
         return [SetParameters(item.command, item.actors, left)] if left else []
 

@@ -125,7 +125,7 @@ class ReactingWalkers:
         """Let all crowds walk on; writes where those want to be who are not where recorded."""
         state = zone.state
         slots = state.of_kind(ACTOR)
-        # Where actors were a tick ago, and how they went on, is the newest that is known of them.
+        # The newest that is known of actors is their places a tick ago, and how they went on.
         velocities = (state.positions[slots] - state.before[slots]) / self._tick_s
         levels = self._storey_of(state.heights[slots])
         ids = [str(zone.actor_of(avatar)) for avatar in state.ids[slots].tolist()]

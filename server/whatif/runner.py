@@ -21,7 +21,7 @@ class _StoppedError(RuntimeError):
 
 @dataclass
 class _Mine:
-    """What a process keeps from run to run."""
+    """The zone and stretch that a process keeps from run to run."""
 
     stretch: Stretch
     stopping: Any

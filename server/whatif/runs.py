@@ -28,7 +28,7 @@ PIECES: Final = 60
 
 @dataclass(frozen=True)
 class Plan:
-    """What is run: a change or none, among people of a kind, by a seed or with recorded chance."""
+    """One run: a change or none, among people of a kind, by a seed or with recorded chance."""
 
     changes: Changes
     people: People
@@ -37,7 +37,7 @@ class Plan:
 
 @dataclass(frozen=True)
 class Run:
-    """What came of a run."""
+    """The figures of a run."""
 
     plan: Plan
     figures: dict[str, float]

@@ -29,11 +29,11 @@ class Stretch:
     ticks: list[RecordedTick]
     """Those after the first one."""
     walked: dict[int, Walked]
-    """Where people were, by their ids, the first tick included."""
+    """The places of people by their ids, the first tick included."""
     joined: dict[tuple[int, int], int]
     """The ids that newcomers got, by tick and ticket."""
     actors_walked: dict[str, Walked]
-    """Where actors were a tick before each one, by their ids, at the heights of the tick itself."""
+    """The places of actors a tick before each one, by their ids, at the heights of that tick."""
     cast: tuple[tuple[ActorSpec, ActorParameters], ...]
     """The actors at its first tick: what each was doing, where it was, and its parameters."""
     actors_radii_m: dict[str, float]

@@ -40,7 +40,7 @@ class WhatIf:
 
     @property
     def sentences(self) -> list[str]:
-        """What was asked, how it was run, and what that means."""
+        """The question, the way it was run, and the meaning of that."""
         end_s = self.from_s + self.duration_s
         told = [
             f"The stretch from {self.from_s:g} s to {end_s:g} s of {self.file}, changed: "

@@ -44,7 +44,7 @@ class Ways(Generic[Who]):
         for who, place in zip(ids, places, strict=True):
             way = self._places.setdefault(who, [])
             first = self._first.setdefault(who, tick)
-            # Who has come back from another zone was away meanwhile.
+            # A person who has come back from another zone was away meanwhile.
             way += [np.full(3, np.nan)] * (tick - first - len(way))
             way.append(place)
 

@@ -12,12 +12,12 @@ class Walkers(Protocol):
 
     @property
     def displacements_m(self) -> list[float]:
-        """How far each person has been from the recorded place at most; nothing of the recorded."""
+        """The greatest distance of each person from the recorded place; nothing of the recorded."""
         ...
 
     @property
     def delays_s(self) -> list[float]:
-        """How late each person has been at most; nothing of the recorded."""
+        """The greatest delay of each person; nothing of the recorded."""
         ...
 
     def at(self, tick: int, zone: Zone) -> tuple[tuple[int, ...], tuple[Point, ...]]:

@@ -11,7 +11,7 @@ OPEN = Scene(bounds=(0.0, 0.0, 12.0, 12.0))
 
 
 def steered(nav: Navigator, velocity: tuple[float, float], ticks: int, who: str = "a") -> None:
-    """So many ticks in which one actor goes at a velocity, and nobody else is there."""
+    """Let one actor go at a velocity for some ticks, where nobody else is."""
     for _ in range(ticks):
         nav.observe({})
         nav.advance({who: velocity})

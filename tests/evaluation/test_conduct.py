@@ -111,7 +111,7 @@ def test_forces_are_those_by_which_people_react(
     def plain(z: complex) -> np.ndarray:
         return np.array([z.real, z.imag])
 
-    (found,) = forces(plain(offset)[None], plain(own), plain(other)[None])
+    (found,) = forces(plain(offset)[None], plain(own)[None], plain(other)[None])
     model = SocialForce(unseen=1.0)
     twin = model.strength_mps2 * naive.evasion(model, offset, own, other, 0.0)
     assert found == pytest.approx(plain(twin), abs=1e-6)

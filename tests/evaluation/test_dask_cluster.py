@@ -22,7 +22,7 @@ needs_dask = pytest.mark.skipif(find_spec("distributed") is None, reason="distri
 
 @pytest.fixture(scope="module")
 def walks(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
-    """What came of walks on a scheduler and three workers, processes of this machine."""
+    """The results of walks on a scheduler and three workers, processes of this machine."""
     folder = tmp_path_factory.mktemp("dask")
     told = folder / "told.json"
     command = [sys.executable, "-m", "tests.evaluation.dask_walks", str(folder), str(told)]

@@ -1,4 +1,4 @@
-"""What a bot sees becomes messages that ROS would take, and what ROS wants becomes movements."""
+"""Views of a bot become messages that ROS would take, and wishes of ROS become movements."""
 
 import math
 from typing import Any
